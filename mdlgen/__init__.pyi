@@ -242,6 +242,8 @@ class Guide(_Guide):
         thickness: str = ...,
         mass: str = ...,
         edge_radius: str | None = ...,
+        pivot: Mapping[str, Any] | None = ...,
+        slide: Mapping[str, Any] | None = ...,
     ) -> None: ...
 
 class Limiter(_Limiter):
@@ -307,6 +309,8 @@ class Mesh(_Mesh):
         density: str | None = ...,
         at: Literal["nodes", "centres"] = ...,
         edge_radius: str = ...,
+        pivot: Mapping[str, Any] | None = ...,
+        slide: Mapping[str, Any] | None = ...,
     ) -> None: ...
 
 class Mirror(_Mirror):
@@ -377,6 +381,8 @@ class Plane(_Plane):
         mass: str = ...,
         press: _Press | Mapping[str, Any] | None = ...,
         edge_radius: str | None = ...,
+        pivot: Mapping[str, Any] | None = ...,
+        slide: Mapping[str, Any] | None = ...,
         repeat: _Repeat | Mapping[str, Any] | None = ...,
         mirror: _Mirror | Mapping[str, Any] | None = ...,
     ) -> None: ...

@@ -16,6 +16,7 @@ from mdlgen.lints import (
     damping,
     drives,
     friction,
+    gates,
     idle,
     missing,
     parameters,
@@ -90,4 +91,9 @@ CHECKS: tuple[Callable[[Model], Iterator[Lint]], ...] = (
     reactions.sees_nothing,
     reactions.never,
     reactions.fights,
+    gates.sweeps,
+    gates.unused,
+    gates.late,
+    gates.unbalanced,
+    gates.soft,
 )

@@ -281,6 +281,28 @@ SCENE = {
         "A motor has no torque at its no-load speed. One that aims at that speed, or beyond it, never gets "
         "there under load; a stepper falls out of step. Aim lower, or change motor or gear."
     ),
+    "W173": (
+        "A part that turns about a pivot, or slides, goes through another part of the machine that it has no "
+        "contact with. A run does not stop it there. Looked at are 25 places of its way, between the least "
+        "and the greatest that its profile or its positions have. What it overlaps where it is given stands"
+        " in a hole that is not modelled, and is left alone."
+    ),
+    "W174": (
+        "`positions` names places, so that a profile and rules can name them. One that neither of them names "
+        "has no effect, but for the room that is left for the motion."
+    ),
+    "W175": (
+        "The profile of a part continues after the end of the run, so the part does not come to where its "
+        "last corner says."
+    ),
+    "W176": (
+        "A part that is free to turn, or to slide, begins at rest at its place 0. Its spring and its weight "
+        "do not balance there, and no stop holds it, so it moves as the run begins. That may be meant."
+    ),
+    "W177": (
+        "A run ends where a free part is further past its stop than a tenth of the way between both stops, "
+        "from which its contacts were chosen. Here its spring and its weight alone push it so far."
+    ),
 }
 
 TEXT = {

@@ -20,6 +20,7 @@ from mdlgen.mechanics.corner import bodies_of, corner_forces
 from mdlgen.mechanics.curve import curve_excess, middle_and_gap
 from mdlgen.mechanics.driven import SENSE, turned
 from mdlgen.mechanics.frame import Frame
+from mdlgen.mechanics.gate import stop
 from mdlgen.mechanics.pair import pair_force
 from mdlgen.mechanics.plastic import accept, bending, couple, flowed, stored
 from mdlgen.mechanics.point import (
@@ -141,7 +142,7 @@ def slide_force(tables, body, at, f, level):
     q, v, t = at
     k = bodies[body].slide
     p = bodies[body].press
-    f[k] += p[FORCE_0] - p[STIFFNESS] * q[k] - p[DAMPING] * v[k]
+    f[k] += p[FORCE_0] - p[STIFFNESS] * q[k] - p[DAMPING] * v[k] + stop(bodies[body], q[k], v[k]).force
     if bodies[body].swings == 0:
         f[k] += level * p[INERTIA] * dot(three(bodies[body].way), three(gravity))
         return

@@ -20,8 +20,10 @@ from mdlgen.mechanics.arm import (
 )
 from mdlgen.mechanics.axle import acting
 from mdlgen.mechanics.driven import prescribed, turned
+from mdlgen.mechanics.gate import GATE, power_of, stop
 from mdlgen.mechanics.point import (
     DISSIPATED,
+    FORCE_B,
     OUT,
     STORED,
     TORQUE_A,
@@ -43,7 +45,7 @@ from mdlgen.program.kernel import njit
 
 
 @njit(cache=True, error_model="numpy")
-def _seen(bodies, pair, t, out, pair_out, i):
+def _seen(bodies, pair, motion, t, out, pair_out, i):
     """What a pair does, in `out` with its points, into its row of `pair_out`; returns the power that it takes
     from prescribed turns."""
     row, power = pair_out[i], 0.0
@@ -54,6 +56,8 @@ def _seen(bodies, pair, t, out, pair_out, i):
         if bodies[body].first < 0 and bodies[body].spin < 0:
             about = dot(three_from(row, torque_at), three(bodies[body].axis))
             power += about * prescribed(bodies[body], t)
+    if bodies[pair.b].swings >= GATE:
+        power += power_of(motion, pair.b, three_from(row, FORCE_B), three_from(row, TORQUE_B))
     return power
 
 
@@ -87,8 +91,9 @@ def ledger(tables, at, work, pair_out, totals):
                 driven -= speeding(bodies[body], t, INSTANT) * v[k]
             else:
                 potential -= p[INERTIA] * dot(three(gravity), three(bodies[body].way)) * q[k]
-            elastic += 0.5 * p[STIFFNESS] * q[k] * q[k]
-            lost += p[DAMPING] * v[k] * v[k]
+            ends = stop(bodies[body], q[k], v[k])
+            elastic += 0.5 * p[STIFFNESS] * q[k] * q[k] + ends.stored
+            lost += p[DAMPING] * v[k] * v[k] + ends.lost
         if bodies[body].spin >= 0:
             spun = v[bodies[body].spin]
             kinetic += 0.5 * bodies[body].press[AXIAL] * spun**2
@@ -107,14 +112,14 @@ def ledger(tables, at, work, pair_out, totals):
     whole = np.zeros(WIDE)
     for i in range(pairs.size):
         if tables.stick.patch_of[i] < 0 and pair_forces(tables, pairs[i], q, motion, f, whole):
-            driven -= _seen(bodies, pairs[i], t, whole, pair_out, i)
+            driven -= _seen(bodies, pairs[i], motion, t, whole, pair_out, i)
             elastic += whole[STORED]
             lost += whole[DISSIPATED]
     held = 0.0
     if tables.stick.pairs.size > 0:
         for row in range(held_forces(tables, at, motion, f)):
             i, out = tables.stick.touched[row], tables.stick.rows[row]
-            driven -= _seen(bodies, pairs[i], t, out, pair_out, i)
+            driven -= _seen(bodies, pairs[i], motion, t, out, pair_out, i)
             elastic += out[STORED]
             lost += out[DISSIPATED]
         held = held_energy(tables, v)

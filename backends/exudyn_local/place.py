@@ -12,6 +12,7 @@ from mdlgen.mechanics.arm import (
     way_of,
 )
 from mdlgen.mechanics.driven import prescribed, turned
+from mdlgen.mechanics.gate import GATE, gate_at
 from mdlgen.mechanics.records import ALONE
 from mdlgen.mechanics.vector import (
     dot,
@@ -59,6 +60,9 @@ def place_body(bodies, body, at, motion):
     r[body, 6] = 2 * (e1 * e3 - e0 * e2)
     r[body, 7] = 2 * (e2 * e3 + e0 * e1)
     r[body, 8] = 1 - 2 * (e1 * e1 + e2 * e2)
+    if bodies[body].swings >= GATE:
+        gate_at(bodies[body], body, 0.0, t, x, r, motion)
+        return
     k = bodies[body].slide
     if k >= 0:
         place = moved(bodies[body], vec(x, body), q[k])
@@ -79,8 +83,10 @@ def place_body(bodies, body, at, motion):
         rate += v[k]
     for i in range(3):
         w[body, i] += rate * bodies[body].axis[i]
-    if bodies[body].carries != 0:  # a mesh shows how far the roller has turned
+    if bodies[body].carries != 0:  # a mesh shows how far the roller has turned, a plate that turns is seen to
         angle = ratio * q[spin] if spin >= 0 else turned(bodies[body], t)
+        if bodies[body].swings == 2:
+            angle += q[k]
         m = matmul(exp_rotation(scale(angle, three(bodies[body].axis))), mat(r, body))
         for i in range(9):
             r[body, i] = m[i]

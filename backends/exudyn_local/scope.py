@@ -6,6 +6,7 @@ from mdlgen.errors import RefusedError
 from mdlgen.model.external import refuse_externals
 from mdlgen.model.sheet_pairs import refuse_searched
 from mdlgen.model.sticking import refuse_sticking
+from mdlgen.model.still import refuse_moving
 from mdlgen.model.tables import BOX_BOX, Model
 from mdlgen.model.tables.axle import CONTROLLED
 from mdlgen.model.yielding import refuse_static_yield
@@ -24,3 +25,4 @@ def check(model: Model) -> None:
                 "held at its limits step by step; the lattice solver has it",
                 ("rollers", roller.name, "drive", "motor", "control"),
             )
+    refuse_moving(model, "Exudyn")

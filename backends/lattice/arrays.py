@@ -25,6 +25,7 @@ from mdlgen.backends.lattice.kernels.state import (
 from mdlgen.backends.lattice.search import Search, plan
 from mdlgen.mechanics.corner import corners_of
 from mdlgen.mechanics.curve import curve_points
+from mdlgen.mechanics.gate import GATE
 from mdlgen.mechanics.pack import (
     gravity,
     number,
@@ -114,8 +115,9 @@ class System(NamedTuple):
 
     @property
     def moving(self) -> Ints:
-        """Bodies that turn or slide: rollers and pressed plates."""
-        return np.flatnonzero((self.bodies["axis"] != 0.0).any(axis=1) | (self.bodies["slide"] >= 0))
+        """Bodies that turn or slide: rollers, pressed plates, and what a law of its place moves."""
+        turns, slides = (self.bodies["axis"] != 0.0).any(axis=1), self.bodies["slide"] >= 0
+        return np.flatnonzero(turns | slides | (self.bodies["swings"] >= GATE))
 
     @property
     def runs(self) -> Ints:

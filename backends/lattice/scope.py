@@ -6,6 +6,7 @@ from mdlgen.errors import RefusedError
 from mdlgen.mechanics.solved import refuse_unsolved
 from mdlgen.model.external import refuse_externals
 from mdlgen.model.meshes import check_balance
+from mdlgen.model.still import refuse_moving
 from mdlgen.model.tables import BOX_BOX, Model
 from mdlgen.model.yielding import refuse_static_yield
 
@@ -16,6 +17,7 @@ def check(model: Model) -> None:
     refuse_unsolved(model, "lattice")
     check_balance(model)
     refuse_static_yield(model, "lattice")
+    refuse_moving(model, "lattice")
     if model.run.analysis == "static" and any(roller.speed for roller in model.rollers):
         # a driven roller rubs on what it touches, and the friction of rest is none
         raise RefusedError(
@@ -38,6 +40,6 @@ def check(model: Model) -> None:
                 ("rollers", roller.name, "press"),
             )
     if bool(model.bodies.fixed[: sum(s.count for s in model.sheets)].all()) and not (
-        model.rollers or model.plates
+        model.rollers or model.plates or any(moving.free for _, moving in model.gates)
     ):
         raise RefusedError("lattice: nothing in this scene can move")

@@ -16,7 +16,7 @@ GROUPS = {
         *("tilt_correction", "rubber_nip"),
     ),
     "Machines that react": ("register",),
-    "Channels and guides": ("channel", "guide_joint"),
+    "Channels and guides": ("channel", "guide_joint", "diverter"),
     "Stacks and feeders": (
         *("stack", "pile", "landing", "spring_plate", "retard_pad", "feeder_window", "feeder", "feeder_one"),
         *("peel", "pick", "retard", "stall"),

@@ -242,6 +242,24 @@ SUMMARY: dict[str, tuple[str, str]] = {
             "mean_penetration_mm": ("mm", "mean depth in sheets over the time in contact"),
         }.items()
     },
+    **{
+        f"{part}.NAME.{key}": words
+        for part in ("planes", "guides", "meshes")
+        for key, words in {
+            "angle_deg": ("deg", "turn about its pivot at the end, from where it is given"),
+            "max_angle_deg": ("deg", "the greatest of the stored times"),
+            "min_angle_deg": ("deg", "the least of the stored times"),
+        }.items()
+    },
+    **{
+        f"{part}.NAME.{key}": words
+        for part in ("guides", "meshes")
+        for key, words in {
+            "slide_mm": ("mm", "way along its slide at the end, from where it is given"),
+            "max_slide_mm": ("mm", "the greatest of the stored times"),
+            "min_slide_mm": ("mm", "the least of the stored times"),
+        }.items()
+    },
     "rollers.NAME.energy.driven_n_mm": ("N mm", "what its drive gave; null of a free roller"),
     "rollers.NAME.mean_nip_force_n": (
         "N",
@@ -312,8 +330,10 @@ SERIES: dict[str, tuple[str, str]] = {
     "NAME.omega_rad_per_s": ("rad/s", "speed of a roller about its axis"),
     "NAME.slide_mm": (
         "mm",
-        "way of a pressed roller or plate along its press direction, from where it is given",
+        "way of a pressed roller or plate along its press direction, or of a part along its slide, from "
+        "where it is given",
     ),
+    "NAME.angle_deg": ("deg", "turn of a plane, guide or mesh about its pivot, from where it is given"),
     "NAME.torque_n_mm": ("N mm", "torque that the drive of a roller gives about its axis"),
     "NAME.power_w": ("W", "power that it gives"),
     "NAME.arm_deg": ("deg", "turn of a roller's arm since it was given, about the roller's axis"),

@@ -2,10 +2,10 @@
 
 The unknown of such a roller's slide is the angle of its arm. A free roller's spin is counted against ground;
 a driven one's drive is against the arm, with which the roller turns. A body record has `swings`, 1 where it
-is on an arm and 2 where it is also driven (0: its slide, if any, is straight); `pivot`, a point of the arm's
-axis; `turn`, that axis; and `hang`, the arm's own mass times the way from the pivot to its centre of mass, as
-the run begins. Its `press` has torsional stiffness and damping, the torque at the angle 0, and the
-inertia of all that turns about the pivot.
+is on an arm and 2 where it is also driven (0: its slide, if any, is straight; beyond 2: see mechanics.gate);
+`pivot`, a point of the arm's axis; `turn`, that axis; and `hang`, the arm's own mass times the way from the
+pivot to its centre of mass, as the run begins. Its `press` has torsional stiffness and damping, the torque
+at the angle 0, and the inertia of all that turns about the pivot.
 """
 
 from __future__ import annotations

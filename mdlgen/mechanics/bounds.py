@@ -48,3 +48,13 @@ def gap_of(pair, x):
 def rate_of(pair, motion):
     """Velocity of the second body of a pair, as the first one has it."""
     return sub(vec(motion.u, pair.b), vec(motion.u, pair.a))
+
+
+@njit(cache=True, error_model="numpy", forceinline=True)
+def swinging(motion, k, gap):
+    """How fast a place of body k that is `gap` off its centre moves at most by its angular velocity; 0 of
+    what does not turn, as of nearly all."""
+    w = vec(motion.w, k)
+    if w[0] == 0.0 and w[1] == 0.0 and w[2] == 0.0:
+        return 0.0
+    return math.sqrt(dot(w, w) * dot(gap, gap))

@@ -122,12 +122,6 @@ def held_frame(motion, k):
 
 
 @njit(cache=True, error_model="numpy", forceinline=True)
-def plate_frame(motion, k):
-    """Frame of body k, which may move but does not turn."""
-    return Frame(vec(motion.x, k), mat(motion.r, k), vec(motion.u, k), (0.0, 0.0, 0.0))
-
-
-@njit(cache=True, error_model="numpy", forceinline=True)
 def box_of(body):
     """Box of a body record."""
     return Box(three(body.half), body.exposed)

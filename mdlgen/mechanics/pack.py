@@ -15,6 +15,7 @@ from mdlgen.mechanics.axle import AXLE
 from mdlgen.mechanics.curve import follow
 from mdlgen.mechanics.driven import drive
 from mdlgen.mechanics.frame import LAW_DYNAMIC, LAW_STATIC
+from mdlgen.mechanics.gate import gate
 from mdlgen.mechanics.laws import damping_share
 from mdlgen.mechanics.measured import FACES, FRICTION, MORE_CD, MORE_MD, POWER, REFERENCE
 from mdlgen.mechanics.mesh_tables import mesh_numbers
@@ -81,6 +82,8 @@ def pack_bodies(model: Model, layout: np.dtype, units: Units = OWN, driven: bool
     for part in (*model.planes, *model.guides):
         bodies["ends"][part.body] = part.ends
         bodies["edge"][part.body] = (*(mm * r for r in part.edges), grip)
+    for part, moving in model.gates:
+        gate(bodies[part.body], moving, mm, g, units.ms)
     for mesh in model.meshes:
         if mesh.on >= 0:
             bodies["carries"][model.rollers[mesh.on].body] = 1
@@ -128,6 +131,9 @@ def number(model: Model, bodies: np.ndarray, first: int, turning: bool = True) -
             row["spin"], first = first, first + 1
     for plate, _ in model.plates:
         bodies["slide"][plate.body], first = first, first + 1
+    for part, moving in model.gates:
+        if moving.free:
+            bodies["slide"][part.body], first = first, first + 1
     return first
 
 

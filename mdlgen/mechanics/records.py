@@ -12,6 +12,7 @@ from mdlgen.mechanics.curve import FOLLOWS
 from mdlgen.mechanics.driven import CLUTCH, DRIVE
 from mdlgen.mechanics.edge import ENDS
 from mdlgen.mechanics.frame import LAW
+from mdlgen.mechanics.gate import STOPS
 from mdlgen.mechanics.rim import RIM
 
 # Of a body. What every step reads of every box stands first: there may be thousands.
@@ -33,7 +34,8 @@ OF_BODY = [
     ("arc", "f8", 3),  # of a guide: radius (0: straight), middle angle, half angle
     ("side", "i8"),  # of a guide, that may be touched: as in mechanics.guide
     *ENDS,
-    *DRIVE,
+    *DRIVE,  # of what a law of its place moves, too, see mechanics.gate
+    *STOPS,  # of what slides or turns freely
     ("coupled", "i8"),  # of a roller on a shaft: ALONE, LEADER, FOLLOWER
     ("ratio", "f8"),  # and its turns for one of the roller that leads, 1: it leads or is alone
 ]

@@ -2,3 +2,4 @@
 
 from mdlgen.spec.machine import MOST_CORNERS as MOST_CORNERS
 from mdlgen.spec.motor import MOST_POINTS as MOST_POINTS
+from mdlgen.spec.moving import MOST_PLACES as MOST_PLACES

@@ -17,6 +17,7 @@ from mdlgen.model.tables import (
     Ints,
     Model,
 )
+from mdlgen.results.gates import motion_of, seen
 from mdlgen.units import PER_SECOND
 
 if TYPE_CHECKING:
@@ -89,7 +90,12 @@ def contact(result: Result, at: Ints) -> tuple[Floats, Floats]:
             continue
         body, states = int(model.pairs.b[mine][0]), np.ix_(at[pressed], boxes)
         shown = Boxes(result.position[states], turns(result.rotation[states]), model.bodies.half[boxes])
-        deep = WITH_SHEET[kind].depths(machine[body], shown, result.position[at[pressed], body])
+        place = result.position[at[pressed], body]
+        if motion_of(machine[body]) is not None:
+            own = seen(result, machine[body], boxes, at[pressed])
+            shown = Boxes(own.place, own.turn, shown.half)
+            place = np.broadcast_to(model.bodies.position[body], place.shape)
+        deep = WITH_SHEET[kind].depths(machine[body], shown, place)
         if deep is None:
             continue
         deep = np.maximum(deep, 0.0)

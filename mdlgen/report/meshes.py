@@ -59,8 +59,8 @@ def on_arms(model: Model) -> list[RollerPart]:
 
 
 def moving(model: Model) -> list[int]:
-    """What may move: boxes, then rollers, pressed plates, meshes on rollers, then arms, which are counted on
-    from the last body."""
+    """What may move: boxes, then rollers, plates that are pressed, parts that turn about a pivot or slide,
+    meshes on rollers, then arms, which are counted on from the last body."""
     boxes = range(sum(sheet.count for sheet in model.sheets))
     arms = range(len(model.bodies.name), len(model.bodies.name) + len(on_arms(model)))
     fixed = model.bodies.fixed

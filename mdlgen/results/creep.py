@@ -177,14 +177,17 @@ def _carrier(model: Model, name: str) -> RollerPart | None:
 
 def _surface(result: Result, name: str, speeds: list[Floats]) -> Floats:
     """How fast the surface of a part is [mm/ms], (t,): of a sheet in its own plane, of a roller and what is
-    on it at its rim; planes, guides and other meshes stand."""
+    on it at its rim, of other parts that move at their centre; planes, guides and meshes else stand."""
     model = result.model
     for k, sheet in enumerate(model.sheets):
         if sheet.name == name:
             return speeds[k]
     roller = _carrier(model, name)
     if roller is None:
-        return np.zeros(len(result.time))
+        moving = next((part for part, _ in model.gates if part.name == name), None)
+        if moving is None:
+            return np.zeros(len(result.time))
+        return np.linalg.norm(result.velocity[:, moving.body], axis=1)
     mesh = next((mesh for mesh in model.meshes if mesh.name == name), None)
     reach = roller.reach if mesh is None else meshes.reach(mesh, roller)
     return np.abs(result.spin[:, roller.body] @ roller.axis) * reach

@@ -29,6 +29,7 @@ from mdlgen.model.tables import (
     RollerPart,
 )
 from mdlgen.results.contact_line import of_row, surface_ratio
+from mdlgen.results.gates import motion_of, seen
 from mdlgen.results.result import ON_B, RUBS
 from mdlgen.results.torques import drive_power
 
@@ -145,15 +146,20 @@ def _on_plate(result: Result, row: int, at: Any) -> Floats:
         some = at[begin : begin + few]
         states = np.ix_(some, boxes)
         shown = Boxes(result.position[states], turns(result.rotation[states]), half)
-        deep = kind.depths(part, shown, result.position[some, part.body])
+        rate = result.velocity[states] - result.velocity[some, part.body][:, None]
+        normal = column(result.rotation[states], 2)
+        at_part = result.position[some, part.body]
+        if motion_of(part) is not None:
+            own = seen(result, part, boxes, some)
+            shown, rate, normal = Boxes(own.place, own.turn, half), own.rate, own.turn[..., 2]
+            at_part = np.broadcast_to(model.bodies.position[part.body], at_part.shape)
+        deep = kind.depths(part, shown, at_part)
         if deep is None:
             return np.zeros(len(at))
         weight = np.maximum(deep, 0.0) ** EXPONENT
         total = weight.sum(axis=1, keepdims=True)
         weight = np.where(total > 0.0, weight / np.where(total > 0.0, total, 1.0), 1.0 / len(boxes))
         # of the middle of each box, along its own face
-        rate = result.velocity[states] - result.velocity[some, part.body][:, None]
-        normal = column(result.rotation[states], 2)
         along = rate - normal * np.einsum("tni,tni->tn", rate, normal)[..., None]
         speeds.append(np.einsum("tn,tn->t", weight, np.linalg.norm(along, axis=2)))
     return result.contact_friction[at, row, RUBS] * np.concatenate(speeds)

@@ -30,7 +30,9 @@ from functools import cached_property
 
 import numpy as np
 
-from mdlgen.model.tables import Floats, Ints, PlanePart, RollerPart
+from mdlgen.model.parts.kinds import kind_of
+from mdlgen.model.tables import Floats, Ints, MachinePart, MovingPart, PlanePart, RollerPart
+from mdlgen.results.gates import place
 from mdlgen.results.residual import left
 from mdlgen.results.result import Result
 from mdlgen.results.strain import apart, sheet_joints
@@ -188,6 +190,27 @@ def _pressed(pair: Pair) -> Iterator[Difference]:
             gap = pair.apart[:, part.body] @ part.press.direction
             judged = max(scale, whole)
             yield Difference(f"{kind}.{part.name}.slide", _rms(gap) / scale, scale, "mm", judged)
+    for part, moving in result.model.gates:
+        if moving.free:
+            yield _free(pair, part, moving, whole)
+
+
+def _free(pair: Pair, part: MachinePart, moving: MovingPart, whole: float) -> Difference:
+    """Angle or way of a part that turns about a pivot, or slides, as forces move it."""
+    one, two = place(pair.result, part), place(pair.other, part)
+    assert one is not None and two is not None, "asked of parts that move"
+    kind = kind_of(part)
+    block = kind.blocks(part)
+    thin = float(np.linalg.norm(block[0, [1, 2, 4]] - block[0, 0], axis=1).min())
+    reach = 1.0
+    if moving.turns:
+        arms = block.reshape(-1, 3) - moving.pivot
+        reach = float(np.linalg.norm(np.cross(arms, moving.axis), axis=1).max())
+    scale = max(float(np.ptp(one)), TENTH * thin / reach)
+    gap = one[pair.here] - two[pair.there]
+    what, unit = ("angle", "rad") if moving.turns else ("slide", "mm")
+    name = f"{kind.table}.{part.name}.{what}"
+    return Difference(name, _rms(gap) / scale, scale, unit, max(scale, whole / reach))
 
 
 def _speeds(pair: Pair) -> Iterator[Difference]:

@@ -13,6 +13,7 @@ import numpy as np
 from mdlgen.model.ends import End, Slab, ends, slab
 from mdlgen.model.rotations import turns
 from mdlgen.model.tables import ON_PLATES, Floats, GuidePart, PlanePart
+from mdlgen.results.gates import motion_of, seen
 
 if TYPE_CHECKING:
     from mdlgen.results.result import Result
@@ -62,9 +63,14 @@ def _side(
     """Adds where one side of some boxes is stopped by an end."""
     p, sign, thick = side // 2, 1.0 if side % 2 else -1.0, 2.0 * plate.half[2]
     half, body = result.model.bodies.half[boxes], plate.part.body
-    moved = result.position[:, body] - result.position[0, body]
-    middle = result.position[:, boxes] - moved[:, None] - end.point
-    turn = turns(result.rotation[:, boxes])
+    if motion_of(plate.part) is None:
+        moved = result.position[:, body] - result.position[0, body]
+        middle = result.position[:, boxes] - moved[:, None] - end.point
+        turn, spin = turns(result.rotation[:, boxes]), result.spin[:, boxes]
+        rate = result.velocity[:, boxes] - result.velocity[:, body, None]
+    else:
+        place, turn, rate, spin = seen(result, plate.part, boxes, slice(None))
+        middle = place - end.point
     way = sign * turn[..., p]
     faces = -(way @ end.out) > _FACES
     if not faces.any():
@@ -87,7 +93,7 @@ def _side(
     if not (beside & faces & (inside <= 0.0)).any():  # none comes from outside
         return
     arm = half[:, p, None] * way
-    rate = result.velocity[:, boxes] + np.cross(result.spin[:, boxes], arm) - result.velocity[:, body, None]
+    rate = rate + np.cross(spin, arm)
     speed = -(rate @ end.out)
     stays, fastest = np.zeros(len(boxes), bool), np.zeros(len(boxes))
     for t in range(len(result.time)):

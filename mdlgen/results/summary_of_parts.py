@@ -11,6 +11,7 @@ import numpy as np
 from mdlgen.model.covers import speed_ratio, under
 from mdlgen.model.tables import Floats, MachinePart, PlanePart, RollerPart
 from mdlgen.results.drag import drags
+from mdlgen.results.gates import record
 from mdlgen.results.losses import driven
 from mdlgen.results.motors import motor_record
 from mdlgen.results.result import Result
@@ -183,7 +184,7 @@ _MORE: dict[type, Callable[[Result, Any], dict[str, Any]]] = {RollerPart: _rolle
 
 
 def of_part(result: Result, part: MachinePart) -> dict[str, Any]:
-    return _MORE.get(type(part), _touched)(result, part)
+    return {**record(result, part), **_MORE.get(type(part), _touched)(result, part)}
 
 
 def _mean(depth: Floats, rows: list[int], result: Result) -> float:

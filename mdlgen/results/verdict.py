@@ -372,6 +372,11 @@ def _series(result: Result, path: str) -> Floats:
             way = slide(result, part)
             if way is not None:
                 return way
+        if (
+            what in ("slide", "slide_mm", "angle", "angle_deg")
+            and (way := place(result, parts[name])) is not None
+        ):
+            return way
         for sheet, drag in drags(result, parts[name]).items():
             if what in (f"contacts.{sheet}.drag", f"contacts.{sheet}.drag_n"):
                 return drag

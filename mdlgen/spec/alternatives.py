@@ -22,6 +22,12 @@ _ALTERNATIVES = (
 )
 
 
-def others(key: object) -> set[str]:
-    """The keys that one takes the place of."""
+# Mappings in which keys of these names stand side by side: of a motion, its direction and its profile.
+_BESIDE = frozenset(("pivot", "slide"))
+
+
+def others(key: object, within: object = None) -> set[str]:
+    """The keys that one takes the place of, in the mapping that is called `within`."""
+    if within in _BESIDE:
+        return set()
     return {other for group in _ALTERNATIVES if key in group for other in group - {key}}

@@ -8,7 +8,8 @@ from typing import TYPE_CHECKING, Literal
 from pydantic import Field, model_validator
 
 from mdlgen.spec.fields import Angle, Direction, LengthOrZero, Mass, Position, PositiveLength
-from mdlgen.spec.machine_part import PARALLEL, MachinePart, cosine, not_modelled, on_its_end, rim_of_sectors
+from mdlgen.spec.machine_part import PARALLEL, cosine, not_modelled, on_its_end, rim_of_sectors
+from mdlgen.spec.moving import MovingPart, Pivot, Slide, pivot_field, slide_field
 from mdlgen.spec.quantities import default
 from mdlgen.spec.strict import Strict, fail
 
@@ -92,8 +93,8 @@ class Arc(Strict):
         return self
 
 
-class Guide(MachinePart):
-    """A fixed plate that leads sheets."""
+class Guide(MovingPart):
+    """A plate that leads sheets, fixed or moved."""
 
     kind = "guide"
     line: Line | None = Field(default=None, description="a straight guide")
@@ -103,7 +104,8 @@ class Guide(MachinePart):
         default=default("1 mm"), description="thickness of the plate, behind the face that is touched"
     )
     mass: Mass = Field(
-        default=default("1 g"), description="mass of the plate, for the text alone: the guide is fixed"
+        default=default("1 g"),
+        description="mass of the plate, for the text, and for a pivot that has a center of mass",
     )
     edge_radius: LengthOrZero | None = Field(
         default=None,
@@ -112,6 +114,8 @@ class Guide(MachinePart):
         "the face climbs the edge; a lower one is stopped (event stub). The edges of the other face have 0.1 "
         "mm at most",
     )
+    pivot: Pivot | None = pivot_field()
+    slide: Slide | None = slide_field()
 
     @property
     def normal(self) -> tuple[float, float, float]:

@@ -24,6 +24,7 @@ from mdlgen.spec.fields import (
 from mdlgen.spec.guide import check_edge
 from mdlgen.spec.machine_part import PARALLEL, MachinePart, cosine, not_modelled, on_its_end
 from mdlgen.spec.motor import Bearing, Limiter, Motor
+from mdlgen.spec.moving import MovingPart, Pivot, Slide, pivot_field, slide_field
 from mdlgen.spec.quantities import combined, default, quantity, reading
 from mdlgen.spec.rim import Rim
 from mdlgen.spec.rows import Mirror, Repeat
@@ -282,7 +283,7 @@ class Roller(MachinePart):
         return None
 
 
-class Plane(MachinePart):
+class Plane(MovingPart):
     """A plate, fixed or pressed by a spring; its contact face is the one on the side of the normal."""
 
     kind = "plane"
@@ -311,6 +312,8 @@ class Plane(MachinePart):
         description="radius of the edges of its face, see edge_radius of a guide; where left out 0.1 mm, or "
         "half of the thickness if that is less",
     )
+    pivot: Pivot | None = pivot_field()
+    slide: Slide | None = slide_field()
     repeat: Repeat | None = Field(default=None, description="a row of such planes")
     mirror: Mirror | None = Field(default=None, description="a second one, its mirror image")
 

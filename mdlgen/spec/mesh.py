@@ -9,7 +9,8 @@ from pydantic import Field, PrivateAttr, ValidationInfo, field_serializer, model
 from mdlgen.spec.beside import beside
 from mdlgen.spec.fields import Angles, LengthOrZero, Mass, Name, Position, origin
 from mdlgen.spec.limits import Tally
-from mdlgen.spec.machine_part import MachinePart, not_modelled, rim_of_sectors
+from mdlgen.spec.machine_part import not_modelled, rim_of_sectors
+from mdlgen.spec.moving import MovingPart, Pivot, Slide, pivot_field, slide_field
 from mdlgen.spec.quantities import default, quantity
 from mdlgen.spec.solid import Solid, read_solid
 from mdlgen.spec.source import Source
@@ -22,7 +23,7 @@ if TYPE_CHECKING:
 Density = Annotated[float, quantity("g/mm^3", 0.0, open_low=True)]
 
 
-class Mesh(MachinePart):
+class Mesh(MovingPart):
     """A part with the shape of a closed surface of triangles."""
 
     kind = "mesh"
@@ -54,6 +55,8 @@ class Mesh(MachinePart):
         description="radius of its edges where the outer sides of a sheet meet them, below 1 mm; 0: the "
         "edges are as sharp as those of the triangles",
     )
+    pivot: Pivot | None = pivot_field()
+    slide: Slide | None = slide_field()
     _solid: Solid | None = PrivateAttr(default=None)
     _from: Source = PrivateAttr(default_factory=Source)
 

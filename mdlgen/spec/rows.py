@@ -17,6 +17,7 @@ KINDS = ("rollers", "planes", "nips")
 MOST = 1000  # of one entry
 _PLACES = ("center", "at")
 _DIRECTIONS = ("normal", "along")
+_ALONE = frozenset(("pivot", "slide"))  # keys of an entry that stands as it is given
 
 
 class Repeat(Strict):
@@ -63,7 +64,7 @@ def expanded(data: dict[str, Any], origins: dict[Path, Path]) -> dict[str, Any]:
 
 def _row(name: Any, entry: Any) -> list[tuple[Any, Any]]:
     """What one entry stands for."""
-    if not isinstance(entry, dict) or not isinstance(name, str):
+    if not isinstance(entry, dict) or not isinstance(name, str) or not _ALONE.isdisjoint(entry):
         return [(name, entry)]
     row = [(name, {key: value for key, value in entry.items() if key not in ("repeat", "mirror")})]
     repeat, mirror = entry.get("repeat"), entry.get("mirror")

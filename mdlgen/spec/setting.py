@@ -140,7 +140,7 @@ def _put(document: Document, path: SpecPath, value: Document, here: Place) -> No
             # of one with the range of its slider the value alone
             return _put(document, (*path, "value"), value, here)
     if isinstance(node, dict):
-        for other in others(last):
+        for other in others(last, path[-2] if len(path) > 1 else None):
             node.pop(other, None)
     node[last] = value.data
     for table, source in ((document.places, value.places), (document.keys, value.keys)):

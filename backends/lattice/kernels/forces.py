@@ -11,6 +11,7 @@ from mdlgen.mechanics.corner import corner_forces
 from mdlgen.mechanics.curve import curve_excess
 from mdlgen.mechanics.driven import SENSE, prescribed, turned
 from mdlgen.mechanics.frame import Frame
+from mdlgen.mechanics.gate import GATE, middle_of_gate
 from mdlgen.mechanics.pair import near, pair_force
 from mdlgen.mechanics.pairs.box_box import near as near_boxes
 from mdlgen.mechanics.point import (
@@ -73,7 +74,11 @@ def turn_roller(body, b, h, t, turning, r, rm):
 @njit(cache=True, error_model="numpy", forceinline=True, **FUSED)
 def place_roller(body, b, h, t, rate, turning, x, r, motion):
     """One roller after h at the rates of its slide and its spin, where it has them; t: that time. One that is
-    round need not turn. A pressed plate has a slide alone."""
+    round need not turn. A pressed plate has a slide alone. What a law of its place moves is where the middle
+    of a step of 2 h has it."""
+    if body.swings >= GATE:
+        middle_of_gate(body, b, h, t, x, r, motion)
+        return
     xm, rm, um, wm = motion
     if body.swings == 2:
         turning = rate

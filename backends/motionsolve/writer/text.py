@@ -5,6 +5,7 @@ from __future__ import annotations
 from mdlgen.altair.air import refuse_air
 from mdlgen.altair.axles import refuse_axles
 from mdlgen.altair.covers import refuse_covers
+from mdlgen.altair.moving import refuse_moving
 from mdlgen.altair.parts import refuse_unwritten
 from mdlgen.altair.poisson import refuse_poisson
 from mdlgen.altair.reactions import refuse_rules
@@ -35,6 +36,7 @@ def check(model: Model) -> None:
     refuse_yield(model, "MotionSolve deck")
     refuse_covers(model, "MotionSolve deck")
     refuse_rules(model, "MotionSolve deck")
+    refuse_moving(model, "MotionSolve deck")
     refuse_searched(model, "MotionSolve deck")
     refuse_unwritten(model, WRITTEN, "MotionSolve deck")
     refuse_compressed(model, "MotionSolve deck")

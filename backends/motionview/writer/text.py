@@ -7,6 +7,7 @@ from dataclasses import replace
 from mdlgen.altair.air import refuse_air
 from mdlgen.altair.axles import refuse_axles
 from mdlgen.altair.covers import refuse_covers
+from mdlgen.altair.moving import refuse_moving
 from mdlgen.altair.parts import refuse_unwritten
 from mdlgen.altair.poisson import refuse_poisson
 from mdlgen.altair.reactions import refuse_rules
@@ -48,6 +49,7 @@ def check_sheets(model: Model) -> None:
     refuse_yield(model, "MotionView text")
     refuse_covers(model, "MotionView text")
     refuse_rules(model, "MotionView text")
+    refuse_moving(model, "MotionView text")
     refuse_searched(model, "MotionView text")
     refuse_air(model, "MotionView text")
     refuse_poisson(model, "MotionView text")

@@ -7,6 +7,7 @@ from typing import Any
 from mdlgen.altair.air import refuse_air
 from mdlgen.altair.axles import refuse_axles
 from mdlgen.altair.covers import refuse_covers
+from mdlgen.altair.moving import refuse_moving
 from mdlgen.altair.parts import refuse_unwritten
 from mdlgen.altair.poisson import refuse_poisson
 from mdlgen.altair.reactions import refuse_rules
@@ -42,6 +43,7 @@ def check(model: Model) -> None:
     refuse_yield(model, who)
     refuse_covers(model, who)
     refuse_rules(model, who)
+    refuse_moving(model, who)
     refuse_searched(model, who)
     refuse_unwritten(model, WRITTEN, who)
     refuse_compressed(model, who)

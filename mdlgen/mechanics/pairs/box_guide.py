@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 
-from mdlgen.mechanics.bounds import fastest_place, gap_of, rate_of, size, turning
+from mdlgen.mechanics.bounds import fastest_place, gap_of, rate_of, size, swinging, turning
 from mdlgen.mechanics.edge import TAKES, deepest_at
 from mdlgen.mechanics.frame import (
     ARC_ANGLE,
@@ -37,7 +37,7 @@ def _plate_of(body, beside):
 def force(bodies, pair, shapes, motion, out):
     """See mechanics.pairs; so are the others."""
     a, guide = frame_of(motion, pair.a), _plate_of(bodies[pair.b], pair.beside)
-    box_guide(out, a, box_of(bodies[pair.a]), held_frame(motion, pair.b), guide, law_of(pair))
+    box_guide(out, a, box_of(bodies[pair.a]), frame_of(motion, pair.b), guide, law_of(pair))
     return presses(out)
 
 
@@ -52,7 +52,8 @@ def near(bodies, pair, shapes, motion, margin, ahead):
     """By the box's bounding sphere, in the guide's axes."""
     a, b = pair.a, pair.b
     reached = TAKES * size(bodies[a]) + margin
-    reached += ahead * fastest_place(size(bodies[a]), rate_of(pair, motion), vec(motion.w, a))
+    fast = fastest_place(size(bodies[a]), rate_of(pair, motion), vec(motion.w, a))
+    reached += ahead * (fast + swinging(motion, b, gap_of(pair, motion.x)))
     at, half = back(mat(motion.r, b), scale(-1.0, gap_of(pair, motion.x))), bodies[b].half
     radius = bodies[b].arc[ARC_RADIUS]
     if abs(at[2]) > half[1] + reached or abs(inward(at, radius)) > 2.0 * half[2] + reached:
@@ -79,6 +80,7 @@ def closing(bodies, pair, shapes, motion, ahead):
     """Along the guide's normal, which in an arc turns on the way."""
     a, b = pair.a, pair.b
     turned, own = turning(bodies[a], motion, a), back(mat(motion.r, b), rate_of(pair, motion))
+    turned += swinging(motion, b, gap_of(pair, motion.x))
     radius = bodies[b].arc[ARC_RADIUS]
     if radius == 0.0:
         return abs(own[1]) + turned

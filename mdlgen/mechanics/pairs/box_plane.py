@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-from mdlgen.mechanics.bounds import gap_of, rate_of, size, turning
+from mdlgen.mechanics.bounds import gap_of, rate_of, size, swinging, turning
 from mdlgen.mechanics.edge import TAKES, deepest_at
-from mdlgen.mechanics.frame import Frame, Plate, box_of, frame_of, held_frame, law_of, plate_frame
+from mdlgen.mechanics.frame import Frame, Plate, box_of, frame_of, held_frame, law_of
 from mdlgen.mechanics.plate import STRAIGHT, as_guide, box_plane
 from mdlgen.mechanics.point import presses
 from mdlgen.mechanics.vector import dot, sub, three, vec
@@ -25,7 +25,7 @@ def _plate_of(body, beside):
 def force(bodies, pair, shapes, motion, out):
     """See mechanics.pairs; so are the others."""
     a, plane = frame_of(motion, pair.a), _plate_of(bodies[pair.b], pair.beside)
-    box_plane(out, a, box_of(bodies[pair.a]), plate_frame(motion, pair.b), plane, law_of(pair))
+    box_plane(out, a, box_of(bodies[pair.a]), frame_of(motion, pair.b), plane, law_of(pair))
     return presses(out)
 
 
@@ -41,7 +41,7 @@ def near(bodies, pair, shapes, motion, margin, ahead):
     """By what the box reaches along the plane's normal; along the plane a sheet may be fast."""
     a, b, r, half = pair.a, pair.b, motion.r, bodies[pair.a].half
     gap, normal = gap_of(pair, motion.x), (r[b, 2], r[b, 5], r[b, 8])
-    fast = abs(dot(rate_of(pair, motion), normal)) + turning(bodies[a], motion, a)
+    fast = abs(dot(rate_of(pair, motion), normal)) + turning(bodies[a], motion, a) + swinging(motion, b, gap)
     out = 0.0
     for i in range(3):
         out += half[i] * abs(normal[0] * r[a, i] + normal[1] * r[a, 3 + i] + normal[2] * r[a, 6 + i])
@@ -69,4 +69,4 @@ def closing(bodies, pair, shapes, motion, ahead):
     """Along the plane's normal."""
     b, r = pair.b, motion.r
     along = abs(dot(rate_of(pair, motion), (r[b, 2], r[b, 5], r[b, 8])))
-    return along + turning(bodies[pair.a], motion, pair.a)
+    return along + turning(bodies[pair.a], motion, pair.a) + swinging(motion, b, gap_of(pair, motion.x))

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import math
 
-from mdlgen.mechanics.bounds import rate_of
-from mdlgen.mechanics.frame import ARC_RADIUS, RADIUS, frame_of, held_frame, law_of
+from mdlgen.mechanics.bounds import gap_of, rate_of, swinging
+from mdlgen.mechanics.frame import ARC_RADIUS, RADIUS, frame_of, law_of
 from mdlgen.mechanics.point import presses
 from mdlgen.mechanics.roller_plate import DEEP_ROLLER, guide_near, roller_guide
 from mdlgen.mechanics.vector import back, dot, mat, sub, three, vec
@@ -19,7 +19,7 @@ KIND = CYLINDER_GUIDE
 def force(bodies, pair, shapes, motion, out):
     """See mechanics.pairs; so are the others."""
     one, two = bodies[pair.a], bodies[pair.b]
-    a, b = frame_of(motion, pair.a), held_frame(motion, pair.b)
+    a, b = frame_of(motion, pair.a), frame_of(motion, pair.b)
     roller_guide(out, one, shapes.rims, a, b, three(two.arc), three(two.half), two.side, law_of(pair))
     return presses(out)
 
@@ -40,7 +40,8 @@ def rolling(bodies, pair, shapes, motion):
 def near(bodies, pair, shapes, motion, margin, ahead):
     """As far as their bounds tell."""
     rate = rate_of(pair, motion)
-    return not apart(bodies, pair, shapes, motion.x, motion.r, margin + ahead * math.sqrt(dot(rate, rate)))
+    fast = math.sqrt(dot(rate, rate)) + swinging(motion, pair.b, gap_of(pair, motion.x))
+    return not apart(bodies, pair, shapes, motion.x, motion.r, margin + ahead * fast)
 
 
 @njit(cache=True, error_model="numpy", forceinline=True, **BORROWS)
@@ -61,4 +62,4 @@ def deepest(bodies, pair):
 def closing(bodies, pair, shapes, motion, ahead):
     """In any direction."""
     rate = rate_of(pair, motion)
-    return math.sqrt(dot(rate, rate))
+    return math.sqrt(dot(rate, rate)) + swinging(motion, pair.b, gap_of(pair, motion.x))

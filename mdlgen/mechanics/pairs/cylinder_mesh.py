@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 
-from mdlgen.mechanics.bounds import rate_of
+from mdlgen.mechanics.bounds import gap_of, rate_of, swinging
 from mdlgen.mechanics.frame import RADIUS, frame_of, law_of
 from mdlgen.mechanics.point import presses
 from mdlgen.mechanics.roller_mesh import roller_mesh, roller_mesh_near
@@ -35,7 +35,8 @@ def rolling(bodies, pair, shapes, motion):
 def near(bodies, pair, shapes, motion, margin, ahead):
     """As far as their bounds tell."""
     rate = rate_of(pair, motion)
-    return not apart(bodies, pair, shapes, motion.x, motion.r, margin + ahead * math.sqrt(dot(rate, rate)))
+    fast = math.sqrt(dot(rate, rate)) + swinging(motion, pair.b, gap_of(pair, motion.x))
+    return not apart(bodies, pair, shapes, motion.x, motion.r, margin + ahead * fast)
 
 
 @njit(cache=True, error_model="numpy", forceinline=True, **BORROWS)
@@ -56,4 +57,9 @@ def closing(bodies, pair, shapes, motion, ahead):
     """Across the axis of the roller that the mesh is on, if it is on one."""
     rate, axis = rate_of(pair, motion), bodies[pair.b].axis
     along = rate[0] * axis[0] + rate[1] * axis[1] + rate[2] * axis[2]
-    return math.sqrt(max(dot(rate, rate) - along * along, 0.0))
+    across = math.sqrt(max(dot(rate, rate) - along * along, 0.0))
+    return (
+        across
+        if bodies[pair.b].swings == 0
+        else math.sqrt(dot(rate, rate)) + swinging(motion, pair.b, gap_of(pair, motion.x))
+    )

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import math
 
-from mdlgen.mechanics.bounds import rate_of
-from mdlgen.mechanics.frame import RADIUS, frame_of, law_of, plate_frame
+from mdlgen.mechanics.bounds import gap_of, rate_of, swinging
+from mdlgen.mechanics.frame import RADIUS, frame_of, law_of
 from mdlgen.mechanics.point import presses
 from mdlgen.mechanics.roller_plate import DEEP_ROLLER, plate_near, roller_plane
 from mdlgen.mechanics.vector import back, dot, mat, sub, three, vec
@@ -18,7 +18,7 @@ KIND = CYLINDER_PLANE
 @njit(cache=True, error_model="numpy", forceinline=True, **BORROWS)
 def force(bodies, pair, shapes, motion, out):
     """See mechanics.pairs; so are the others."""
-    a, b, half = frame_of(motion, pair.a), plate_frame(motion, pair.b), three(bodies[pair.b].half)
+    a, b, half = frame_of(motion, pair.a), frame_of(motion, pair.b), three(bodies[pair.b].half)
     roller_plane(out, bodies[pair.a], shapes.rims, a, b, half, law_of(pair))
     return presses(out)
 
@@ -34,7 +34,8 @@ def rolling(bodies, pair, shapes, motion):
 def near(bodies, pair, shapes, motion, margin, ahead):
     """As far as their bounds tell."""
     rate = rate_of(pair, motion)
-    return not apart(bodies, pair, shapes, motion.x, motion.r, margin + ahead * math.sqrt(dot(rate, rate)))
+    fast = math.sqrt(dot(rate, rate)) + swinging(motion, pair.b, gap_of(pair, motion.x))
+    return not apart(bodies, pair, shapes, motion.x, motion.r, margin + ahead * fast)
 
 
 @njit(cache=True, error_model="numpy", forceinline=True, **BORROWS)
@@ -55,4 +56,4 @@ def deepest(bodies, pair):
 def closing(bodies, pair, shapes, motion, ahead):
     """In any direction."""
     rate = rate_of(pair, motion)
-    return math.sqrt(dot(rate, rate))
+    return math.sqrt(dot(rate, rate)) + swinging(motion, pair.b, gap_of(pair, motion.x))

@@ -11,6 +11,7 @@ from collections.abc import Iterator
 import numpy as np
 from numpy.typing import NDArray
 
+from mdlgen.model.moved import as_begun, since
 from mdlgen.model.overlaps.fold import overlaps
 from mdlgen.model.overlaps.parts import HAIR
 from mdlgen.model.parts.kinds import kind_of
@@ -204,6 +205,9 @@ class SheetOverlaps:
         return np.einsum("nij,nj->ni", turns, self._model.bodies.half[boxes])
 
     def _apart_from(self, part: MachinePart, extent: Extent, position: Floats, more: float = 0.0) -> bool:
+        moving = getattr(part, "moving", None)
+        if moving is not None and moving.turns:
+            return False
         if part.name not in self._reach:
             self._reach[part.name] = self._part_extent(part)
         low, high = self._reach[part.name]
@@ -232,7 +236,13 @@ class SheetOverlaps:
         own[:, :, 2] = off
         at = position[boxes]
         points = at[:, None] + np.einsum("nij,nkj->nki", turns, own)
-        stands = position[part.body], self._model.bodies.rotation[part.body]
+        bodies = self._model.bodies
+        stands = position[part.body], bodies.rotation[part.body]
+        if getattr(part, "moving", None) is not None:
+            turned = since(bodies, part.body, rotation[part.body].reshape(3, 3))
+            points = as_begun(bodies, part.body, position[part.body], turned, points)
+            at = as_begun(bodies, part.body, position[part.body], turned, at)
+            stands = bodies.position[part.body], bodies.rotation[part.body]
         deep = kind_of(part).inside(part, points, at[:, None], *stands)
         if deep is None:
             return None

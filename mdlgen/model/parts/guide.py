@@ -1,4 +1,4 @@
-"""Guides: fixed plates, straight or bent to an arc, and the boxes by which text and deck show them."""
+"""Guides: plates, straight or bent to an arc, and the boxes by which text and deck show them."""
 
 from __future__ import annotations
 
@@ -12,6 +12,7 @@ from mdlgen.geometry.arrays import Floats
 from mdlgen.geometry.rods import Box, Rod, into_box
 from mdlgen.geometry.solids import BOX, CORNERS, Solid, bent_plate
 from mdlgen.model.frames import frame
+from mdlgen.model.moved import carries, lower_motion, moves, swept, watched
 from mdlgen.model.parameters.names import NAMED_AXES
 from mdlgen.model.parts.kind import BodyRow, Boxes, Drawn, Kind
 from mdlgen.model.press.before import Before
@@ -56,12 +57,23 @@ class _Guides(Kind[GuidePart]):
         return face_of_guide(_guide(name, scene.guides[name], 0), at)
 
     def body(self, part: GuidePart, rollers: tuple[RollerPart, ...]) -> BodyRow:
-        return BodyRow(part.center, part.axes, part.mass, _inertia(part), True, np.zeros(3))
+        return BodyRow(part.center, part.axes, part.mass, _inertia(part), part.moving is None, np.zeros(3))
 
     def bounds(
         self, part: GuidePart, bodies: Bodies, rollers: tuple[RollerPart, ...]
     ) -> tuple[Floats, Floats]:
-        return bounds(part)
+        return bounds(part) if part.moving is None else swept(part.moving, _points(part))
+
+    def centre_bounds(
+        self, part: GuidePart, position: Floats, margin: float | None
+    ) -> tuple[Floats, Floats] | None:
+        return None if part.moving is None else watched(part.moving, part.center)
+
+    def carry(self, part: GuidePart) -> Floats:
+        return np.zeros(3) if part.moving is None else carries(part.moving, _points(part))
+
+    def blocks(self, part: GuidePart) -> Floats:
+        return _points(part).reshape(-1, 8, 3)
 
     def reach(self, part: GuidePart, bodies: Bodies, way: Floats) -> float:
         low, high = bounds(part)
@@ -126,7 +138,8 @@ class _Guides(Kind[GuidePart]):
             form = f"straight, {part.length:.4g} mm long"
         else:
             form = f"arc of radius {part.radius:.4g} mm over {np.degrees(2 * part.half_angle):.4g} deg"
-        return [f"{form}, {part.width:.4g} mm wide", f"touched on the side: {part.side}"]
+        facts = [f"{form}, {part.width:.4g} mm wide", f"touched on the side: {part.side}"]
+        return facts if part.moving is None else [*facts, moves(part.moving)]
 
     def label(self, model: Model, part: GuidePart, seen: tuple[Floats, Floats]) -> Floats:
         """The middle of its face."""
@@ -168,6 +181,7 @@ def _guide(name: str, guide: Guide, body: int) -> GuidePart:
         mass=guide.mass,
         facets=facets,
         edges=edge_radii(guide.edge_radius, guide.thickness, SIDES[side]),
+        moving=lower_motion(guide.moves, guide.mass),
     )
 
 
@@ -203,10 +217,14 @@ def facets(guide: GuidePart) -> list[Facet]:
     return made
 
 
+def _points(guide: GuidePart) -> Floats:
+    """Corners of the boxes of a guide [mm], (8 facets, 3)."""
+    return np.concatenate([f.center + (CORNERS / 2 * f.lengths) @ f.rotation.T for f in facets(guide)])
+
+
 def bounds(guide: GuidePart) -> tuple[Floats, Floats]:
     """Least and greatest coordinates of a guide [mm], (3,)."""
-    corners = np.array([[i, j, k] for i in (-0.5, 0.5) for j in (-0.5, 0.5) for k in (-0.5, 0.5)])
-    points = np.concatenate([f.center + (corners * f.lengths) @ f.rotation.T for f in facets(guide)])
+    points = _points(guide)
     return points.min(axis=0), points.max(axis=0)
 
 

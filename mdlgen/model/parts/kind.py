@@ -119,6 +119,11 @@ class Kind(Generic[P]):
         """How far it reaches along a unit vector as the run begins: the greatest coordinate [mm]."""
         raise NotImplementedError
 
+    def blocks(self, part: P) -> Floats:
+        """Corners of blocks that it fits in as it is given, in the order of `geometry.solids` [mm],
+        (n, 8, 3); asked of parts that may move."""
+        raise NotImplementedError
+
     # -- how deep something is in it
 
     def overlap(self, part: P, position: Floats, rotation: Floats) -> Callable[[Rod], float]:

@@ -9,9 +9,10 @@ import numpy as np
 
 from mdlgen.geometry.arrays import Floats
 from mdlgen.geometry.rods import Rod, into_triangles
-from mdlgen.geometry.solids import Solid
+from mdlgen.geometry.solids import CORNERS, Solid
 from mdlgen.model.grid import rotation_matrix
 from mdlgen.model.meshes import LIGHT, mass_of, placed, reach
+from mdlgen.model.moved import carries, lower_motion, moves, swept, watched
 from mdlgen.model.parameters.machine import center_rows
 from mdlgen.model.parameters.names import NAMED_AXES
 from mdlgen.model.parts.kind import SLACK, BodyRow, Drawn, Kind
@@ -52,16 +53,30 @@ class _Meshes(Kind[MeshPart]):
     def body(self, part: MeshPart, rollers: tuple[RollerPart, ...]) -> BodyRow:
         position, rotation = placed(part, rollers)
         inertia = part.mass * part.gyration
-        return BodyRow(position, rotation, part.mass, inertia, part.on < 0, np.zeros(3))
+        fixed = part.on < 0 and part.moving is None
+        return BodyRow(position, rotation, part.mass, inertia, fixed, np.zeros(3))
 
     def bounds(
         self, part: MeshPart, bodies: Bodies, rollers: tuple[RollerPart, ...]
     ) -> tuple[Floats, Floats]:
         """One on a pressed roller may move with it."""
+        if part.moving is not None:
+            return swept(part.moving, _points(part))
         low, high = _bounds(part, rollers)
         press = rollers[part.on].press if part.on >= 0 else None
         more = np.zeros(3) if press is None else rollers[part.on].radius * np.abs(press.direction) + SLACK
         return low - more, high + more
+
+    def centre_bounds(
+        self, part: MeshPart, position: Floats, margin: float | None
+    ) -> tuple[Floats, Floats] | None:
+        return None if part.moving is None else watched(part.moving, position)
+
+    def carry(self, part: MeshPart) -> Floats:
+        return np.zeros(3) if part.moving is None else carries(part.moving, _points(part))
+
+    def blocks(self, part: MeshPart) -> Floats:
+        return _points(part)[None]
 
     def reach(self, part: MeshPart, bodies: Bodies, way: Floats) -> float:
         return float(((part.center + part.corners @ part.axes.T) @ way).max())
@@ -103,6 +118,7 @@ class _Meshes(Kind[MeshPart]):
 
     def facts(self, model: Model, part: MeshPart) -> list[str]:
         where = "fixed" if part.on < 0 else f"turns with {model.rollers[part.on].name}"
+        where = where if part.moving is None else moves(part.moving)
         return [f"{part.file}, {len(part.triangles)} triangles", where]
 
     def overview(self, part: MeshPart) -> dict[str, Any]:
@@ -121,6 +137,7 @@ def _mesh(name: str, mesh: Mesh, body: int, on: int) -> MeshPart:
     scale, solid = SCALES[mesh.units], mesh.solid
     corners = solid.corners * scale
     volume, middle, second = moments(corners, solid.triangles)
+    mass = mass_of(mesh)
     gyration, principal = _principal(second)
     return MeshPart(
         name=name,
@@ -139,9 +156,10 @@ def _mesh(name: str, mesh: Mesh, body: int, on: int) -> MeshPart:
         middle=middle,
         principal=principal,
         gyration=gyration,
-        mass=mass_of(mesh),
+        mass=mass,
         density=mesh.density,
         edge_radius=mesh.edge_radius,
+        moving=lower_motion(mesh.moves, mass),
     )
 
 
@@ -160,6 +178,13 @@ def _principal(second: Floats) -> tuple[Floats, Floats]:
     # to digits that every library of linear algebra gives: they stand in texts
     values = np.array([float(f"{v:.13g}") for v in values])
     return values, np.asarray(np.round(axes, 14) + 0.0, dtype=np.float64)
+
+
+def _points(mesh: MeshPart) -> Floats:
+    """Corners of the block of file axes that a mesh fits in [mm], (8, 3)."""
+    low, high = mesh.corners.min(axis=0), mesh.corners.max(axis=0)
+    block = 0.5 * (low + high) + 0.5 * (high - low) * CORNERS
+    return mesh.center + block @ mesh.axes.T
 
 
 def _bounds(mesh: MeshPart, rollers: tuple[RollerPart, ...]) -> tuple[Floats, Floats]:

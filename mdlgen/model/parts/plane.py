@@ -11,6 +11,7 @@ from mdlgen.geometry.arrays import Floats
 from mdlgen.geometry.rods import Box, Rod, into_box
 from mdlgen.geometry.solids import BOX, CORNERS, Solid
 from mdlgen.model.frames import frame
+from mdlgen.model.moved import carries, lower_motion, moves, swept, watched
 from mdlgen.model.parameters.machine import center_rows, spring_rows, start_row
 from mdlgen.model.parameters.names import NAMED_AXES
 from mdlgen.model.parts.kind import SLACK, BodyRow, Boxes, Drawn, Kind
@@ -49,6 +50,7 @@ class _Planes(Kind[PlanePart]):
                 mass=plane.mass,
                 press=plate_press(scene, name, before) if plane.press else None,
                 edges=edge_radii(plane.edge_radius, plane.size[2], 1),
+                moving=lower_motion(plane.moves, plane.mass),
             )
             for index, (name, plane) in enumerate(sorted(scene.planes.items()))
         )
@@ -67,17 +69,23 @@ class _Planes(Kind[PlanePart]):
         inertia = part.mass / 12 * np.array([b * b + c * c, a * a + c * c, a * a + b * b])
         start = part.press.start * part.press.direction if part.press else np.zeros(3)
         place, half = part.center + start, np.array(part.size) / 2
-        return BodyRow(place, frame(part.normal), part.sliding_mass, inertia, part.press is None, half)
+        fixed = part.press is None and part.moving is None
+        return BodyRow(place, frame(part.normal), part.sliding_mass, inertia, fixed, half)
 
     def bounds(
         self, part: PlanePart, bodies: Bodies, rollers: tuple[RollerPart, ...]
     ) -> tuple[Floats, Floats]:
         """A pressed one may move by the length of its spring."""
+        if part.moving is not None:
+            return swept(part.moving, _corners(part))
         center = bodies.position[part.body]
         extent = np.abs(bodies.rotation[part.body]) @ (np.array(part.size) / 2)
         if part.press is not None:
             center, extent = part.center, extent + part.travel + SLACK
         return center - extent, center + extent
+
+    def blocks(self, part: PlanePart) -> Floats:
+        return _corners(part)[None]
 
     def reach(self, part: PlanePart, bodies: Bodies, way: Floats) -> float:
         extent = float(np.abs(bodies.rotation[part.body].T @ way) @ (np.array(part.size) / 2))
@@ -90,13 +98,15 @@ class _Planes(Kind[PlanePart]):
         self, part: PlanePart, position: Floats, margin: float | None
     ) -> tuple[Floats, Floats] | None:
         """A spring ends, whatever is kept; its slide keeps a plate on its way to round-off."""
+        if part.moving is not None:
+            return watched(part.moving, part.center)
         if part.press is None:
             return None
         far = part.travel + 1e-6 * part.press.free_length
         return part.center - far, part.center + far
 
     def carry(self, part: PlanePart) -> Floats:
-        return part.travel
+        return part.travel if part.moving is None else carries(part.moving, _corners(part))
 
     def overlap(self, part: PlanePart, position: Floats, rotation: Floats) -> Callable[[Rod], float]:
         block = Box(position, rotation, np.array(part.size) / 2)
@@ -150,6 +160,8 @@ class _Planes(Kind[PlanePart]):
 
     def facts(self, model: Model, part: PlanePart) -> list[str]:
         facts = [" x ".join(f"{s:.4g}" for s in part.size) + f" mm, face towards {direction(part.normal)}"]
+        if part.moving is not None:
+            return [*facts, moves(part.moving)]
         if part.press is None:
             return [*facts, "fixed"]
         spring = part.press
@@ -164,6 +176,11 @@ class _Planes(Kind[PlanePart]):
         corner = bodies.position[part.body] + bodies.rotation[part.body] @ corner
         near = np.clip(corner, *seen)
         return near + part.normal * float((corner - near) @ part.normal)
+
+
+def _corners(part: PlanePart) -> Floats:
+    """The corners of the plate as it is given [mm], (8, 3)."""
+    return part.center + (CORNERS * np.array(part.size) / 2) @ frame(part.normal).T
 
 
 KIND = _Planes()

@@ -58,6 +58,8 @@ from mdlgen.model.tables.model import Model as Model
 from mdlgen.model.tables.model import Parameter as Parameter
 from mdlgen.model.tables.model import RunSettings as RunSettings
 from mdlgen.model.tables.model import Tension as Tension
+from mdlgen.model.tables.moving import MovingPart as MovingPart
+from mdlgen.model.tables.moving import StopsPart as StopsPart
 from mdlgen.model.tables.reactions import Order as Order
 from mdlgen.model.tables.reactions import Reactions as Reactions
 from mdlgen.model.tables.reactions import RulePart as RulePart

@@ -11,6 +11,7 @@ from mdlgen.geometry.arrays import Floats as Floats
 from mdlgen.geometry.arrays import Ints as Ints
 from mdlgen.model.tables.axle import FREE, AxlePart
 from mdlgen.model.tables.bodies import Frozen
+from mdlgen.model.tables.moving import MovingPart
 
 
 @dataclass(frozen=True)
@@ -210,8 +211,8 @@ class RollerPart(MachinePart):
 
 @dataclass(frozen=True)
 class PlanePart(MachinePart):
-    """A plate, fixed or pressed; local axes in the columns of the body's rotation, z = normal. `center` is as
-    the user gave it, the body's position includes `press.start`."""
+    """A plate, fixed, pressed or moved; local axes in the columns of the body's rotation, z = normal.
+    `center` is as the user gave it, the body's position includes `press.start`."""
 
     kind: ClassVar[str] = "plane"
     normal: Floats
@@ -220,6 +221,7 @@ class PlanePart(MachinePart):
     press: Press | None = None
     edges: tuple[float, float] = (0.0, 0.0)  # radii of the edges of its upper and its lower face [mm]
     ends: int = 0  # its free ends as a bit mask, see model.ends
+    moving: MovingPart | None = None
 
     @property
     def sliding_mass(self) -> float:
@@ -234,7 +236,7 @@ class PlanePart(MachinePart):
 
 @dataclass(frozen=True)
 class GuidePart(MachinePart):
-    """A fixed plate, straight or bent to an arc; its centre is the middle of a line, or on an arc's axis. Of
+    """A plate, straight or bent to an arc; its centre is the middle of a line, or on an arc's axis. Of
     its axes z is along the width; x is along a line and y its normal, and the angles of an arc turn from x to
     y."""
 
@@ -252,12 +254,13 @@ class GuidePart(MachinePart):
     facets: int  # boxes by which a text shows it
     edges: tuple[float, float] = (0.0, 0.0)  # radii of the edges of its upper and its lower face [mm]
     ends: int = 0  # its free ends as a bit mask, see model.ends
+    moving: MovingPart | None = None
 
 
 @dataclass(frozen=True)
 class MeshPart(MachinePart):
-    """A closed surface of triangles, fixed or on a roller. Its body has the axes of its inertia, and stands
-    at the middle of its mass; `center` is the origin of the file's axes."""
+    """A closed surface of triangles, fixed, moved or on a roller. Its body has the axes of its inertia, and
+    stands at the middle of its mass; `center` is the origin of the file's axes."""
 
     kind: ClassVar[str] = "mesh"
     file: str
@@ -276,6 +279,7 @@ class MeshPart(MachinePart):
     mass: float
     density: float | None  # that the user gave in place of the mass [g/mm^3]
     edge_radius: float = 0.0  # that outer sides of sheets meet at its edges [mm]
+    moving: MovingPart | None = None
 
 
 @dataclass(frozen=True)

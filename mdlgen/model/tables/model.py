@@ -29,6 +29,7 @@ from mdlgen.model.tables.machine import (
     Press,
     RollerPart,
 )
+from mdlgen.model.tables.moving import MovingPart
 from mdlgen.model.tables.reactions import Reactions, no_reactions
 from mdlgen.model.tables.sheets import SheetPart
 
@@ -177,6 +178,12 @@ class Model(Frozen):
     def plates(self) -> list[tuple[PlanePart, Press]]:
         """The planes that springs press, and their presses."""
         return [(plane, plane.press) for plane in self.planes if plane.press is not None]
+
+    @cached_property
+    def gates(self) -> tuple[tuple[PlanePart | GuidePart | MeshPart, MovingPart], ...]:
+        """The parts that turn about a pivot or slide, by a profile or by forces, and how."""
+        parts = (*self.planes, *self.guides, *self.meshes)
+        return tuple((part, part.moving) for part in parts if part.moving is not None)
 
     @property
     def pair_friction(self) -> Floats:

@@ -10,6 +10,7 @@ from mdlgen.model.tables import Floats, Ints, RollerPart
 from mdlgen.report.animation import thinned
 from mdlgen.results.compare import travel
 from mdlgen.results.drag import drags
+from mdlgen.results.gates import shown
 from mdlgen.results.losses import driven, summed
 from mdlgen.results.result import Result
 from mdlgen.results.slide import slide
@@ -144,7 +145,21 @@ def _rollers(result: Result, at: Ints, deep: Floats) -> list[Panel]:
             arms.lines.append(Line(roller.name, result.time[thin], np.degrees(turned[thin])))
         omega = result.spin[:, roller.body] @ roller.axis * PER_SECOND
         spin.lines.append(Line(roller.name, result.time[thin], omega[thin]))
-    return [force, depth, place, arms, spin, *_drives(result, thin)]
+    return [force, depth, place, arms, *_gates(result, thin), spin, *_drives(result, thin)]
+
+
+def _gates(result: Result, thin: Ints) -> list[Panel]:
+    """Places of parts that turn about a pivot or slide."""
+    angles = Panel("pivot", "Angle of each part about its pivot", "deg", short="pivot")
+    ways = Panel("gate", "Way of each part along its slide", "mm", short="slide")
+    for part, moving in result.model.gates:
+        found = shown(result, part)
+        if found is not None:
+            panel = angles if moving.turns else ways
+            panel.lines.append(Line(part.name, result.time[thin], found[1][thin]))
+    for panel in (angles, ways):
+        panel.note = "from where it is given"
+    return [angles, ways]
 
 
 def _drives(result: Result, thin: Ints) -> list[Panel]:

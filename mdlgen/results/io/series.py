@@ -6,6 +6,7 @@ import numpy as np
 
 from mdlgen.model.tables import Floats, MachinePart, PlanePart, RollerPart
 from mdlgen.results.drag import drags
+from mdlgen.results.gates import shown
 from mdlgen.results.losses import driven, summed
 from mdlgen.results.result import Result
 from mdlgen.results.slide import slide
@@ -47,6 +48,8 @@ def series(result: Result) -> dict[str, Floats]:
             continue
         table[f"{part.name}.force_n"] = result.contact_force[:, list(part_rows(result, part))].sum(axis=1)
         table |= _drags(result, part)
+        if (found := shown(result, part)) is not None:
+            table[f"{part.name}.{found[0]}"] = found[1]
     return table | _energies(result)
 
 

@@ -45,6 +45,7 @@ from mdlgen.backends.lattice.kernels.tuning import (
 from mdlgen.mechanics.arm import AXIAL, DAMPING, INERTIA, STIFFNESS, turn_of, way_of
 from mdlgen.mechanics.axle import acting
 from mdlgen.mechanics.frame import RADIUS
+from mdlgen.mechanics.gate import stop
 from mdlgen.mechanics.pair import on_fixed_plate
 from mdlgen.mechanics.point import FORCE_A, FORCE_B, OUT, POINT, POINTS
 from mdlgen.mechanics.records import FOLLOWER
@@ -124,6 +125,7 @@ def _impulses(tables, xm, h, t, state, condensed, m, p):
 def _begin(work, h, m):
     """Sets z to zero, z0 to what the residual changes, and the measures of both."""
     bodies, nodes, x, ub = work.tables.bodies, work.tables.nodes, work.state.x, work.state.ub
+    s = work.state.s
     condensed, islands, res, resb = work.condensed, work.islands, work.matrix.res, work.matrix.resb
     strict, label = islands.strict, work.free.label
     z, z0, own, measure = condensed.z, condensed.z0, condensed.own, condensed.measure
@@ -138,7 +140,9 @@ def _begin(work, h, m):
         slide, spin, p = bodies[b].slide, bodies[b].spin, bodies[b].press
         times = strict[islands.part[b]]
         if slide >= 0:
-            own[slide] = 1.0 / (p[INERTIA] + h * p[DAMPING] + h * h * p[STIFFNESS])
+            ends = stop(bodies[b], s[slide] + h * ub[slide], ub[slide])
+            stiff, damps = p[STIFFNESS] + ends.by_place, p[DAMPING] + ends.by_rate
+            own[slide] = 1.0 / (p[INERTIA] + h * damps + h * h * stiff)
             way = way_of(bodies[b], vec(x, b))
             measure[6 * m + slide] = times * math.sqrt(dot(way, way))
         if spin >= 0 and bodies[b].coupled != FOLLOWER:

@@ -16,6 +16,7 @@ from mdlgen.mechanics.arm import turn_of, way_of
 from mdlgen.mechanics.bounds import fastest_place
 from mdlgen.mechanics.crossing import above, buried, closing, deepest, solid, unseen
 from mdlgen.mechanics.frame import LAW_SMOOTHING, Frame, Motion, frame_of
+from mdlgen.mechanics.gate import GATE, gate_at
 from mdlgen.mechanics.impacts import stored_beyond, turning_back
 from mdlgen.mechanics.mesh import BLOCK
 from mdlgen.mechanics.overlap import impact
@@ -68,6 +69,9 @@ def _place(tables, state, b, h, t, motion):
     n = body.node
     if n >= 0:
         place_box(b, h, (u[n, 0], u[n, 1], u[n, 2]), (u[n, 3], u[n, 4], u[n, 5]), x, r, motion)
+        return
+    if body.swings >= GATE:
+        gate_at(body, b, t, t + h, x, r, motion)
         return
     for i in range(3):
         xs[b, i], us[b, i], ws[b, i] = x[b, i], 0.0, 0.0

@@ -22,8 +22,9 @@ from mdlgen.backends.lattice.kernels.state import (
 from mdlgen.mechanics.arm import AXIAL, DAMPING, speeding
 from mdlgen.mechanics.axle import acting
 from mdlgen.mechanics.driven import SENSE, prescribed
+from mdlgen.mechanics.gate import GATE, power_of, stop
 from mdlgen.mechanics.point import DISSIPATED as OF_PAIR
-from mdlgen.mechanics.point import TORQUE_A, TORQUE_B
+from mdlgen.mechanics.point import FORCE_B, TORQUE_A, TORQUE_B
 from mdlgen.mechanics.vector import add, cross, dot, mat, rotate, three, three_from, vec
 from mdlgen.program.kernel import BORROWS, njit
 
@@ -58,6 +59,9 @@ def _contacts(work, t, dt, count, energies, driven):
             if islands.part[b] >= 0 and not islands.answers[islands.part[b]]:
                 about = dot(three_from(out, torque), three(bodies[b].axis))
                 driven[group] -= prescribed(bodies[b], t) * about
+        b = pairs[p].b
+        if bodies[b].swings >= GATE:
+            driven[group] -= power_of(mid.motion, b, three_from(out, FORCE_B), three_from(out, TORQUE_B))
     for k in range(film.many[0]):
         group, i = islands.group_of_row[pairs[film.listed[k]].row], film.head[film.listed[k]]
         while i >= 0:
@@ -87,6 +91,10 @@ def account(work, t, dt, count, energies, driven):
         driven[0] += mid.totals[POWER]
     for b in tables.moving:
         group = islands.group[islands.part[b]]
+        if bodies[b].swings >= GATE:
+            if not several:
+                driven[group] -= power_of(mid.motion, b, vec(f, b), (f[b, 3], f[b, 4], f[b, 5]))
+            continue
         lost = 0.0
         if bodies[b].clutch[SENSE] != 0.0:
             at = bodies[b].spin
@@ -102,7 +110,9 @@ def account(work, t, dt, count, energies, driven):
             if bodies[b].swings == 2:
                 driven[group] -= speeding(bodies[b], t + 0.5 * dt, 0.5 * dt) * ub[bodies[b].slide]
         if bodies[b].slide >= 0:
-            lost += bodies[b].press[DAMPING] * ub[bodies[b].slide] ** 2
+            slide = bodies[b].slide
+            lost += bodies[b].press[DAMPING] * ub[slide] ** 2
+            lost += stop(bodies[b], state.s[slide] + 0.5 * dt * ub[slide], ub[slide]).lost
         energies[group, DISSIPATED] += dt * lost
     for group in range(driven.size):
         energies[group, DRIVEN] += dt * driven[group]

@@ -8,6 +8,7 @@ from mdlgen.backends.lattice.kernels.state import OWN_INERTIA
 from mdlgen.mechanics.arm import AXIAL, moved
 from mdlgen.mechanics.axle import AXLE, acting, behind_at_end
 from mdlgen.mechanics.driven import SENSE, prescribed
+from mdlgen.mechanics.gate import GATE, shift_gate, went
 from mdlgen.mechanics.records import FOLLOWER
 from mdlgen.mechanics.vector import back, exp_rotation, mat, matmul, rotate, three_from, vec
 from mdlgen.program.kernel import BORROWS, njit
@@ -50,6 +51,9 @@ def carry(tables, state, t, dt):
             l[n, i] = 2.0 * p[i] - l[n, i]
     reflect(images, x, r)
     for k in tables.moving:
+        if bodies[k].swings >= GATE:
+            shift_gate(bodies[k], k, went(bodies[k], t, t + dt), x, r, x, r)
+            continue
         slide, spin_at = bodies[k].slide, bodies[k].spin
         if bodies[k].rims > 0 or bodies[k].carries != 0:
             turning = ub[slide] if bodies[k].swings == 2 else 0.0

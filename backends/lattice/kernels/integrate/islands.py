@@ -24,6 +24,7 @@ from mdlgen.backends.lattice.kernels.tuning import EPSILON, FOLLOWED, STILL, UNI
 from mdlgen.mechanics.arm import AXIAL, INERTIA, way_of
 from mdlgen.mechanics.driven import prescribed
 from mdlgen.mechanics.frame import RADIUS
+from mdlgen.mechanics.gate import GATE, fastest_of_gate
 from mdlgen.mechanics.point import STORED
 from mdlgen.mechanics.records import FOLLOWER
 from mdlgen.mechanics.vector import back, dot, mat, three_from, vec
@@ -60,6 +61,9 @@ def _speeds_of_moving(work, t):
     bodies, x, ub, islands = work.tables.bodies, work.mid.motion.x, work.state.ub, work.islands
     for b in work.tables.moving:
         body, part = bodies[b], islands.part[b]
+        if body.swings >= GATE:
+            islands.speed[part] = fastest_of_gate(body, x, b, t)
+            continue
         turns = body.ratio * ub[body.spin] if body.spin >= 0 else prescribed(body, t)
         speed = abs(turns) * body.size[RADIUS]
         if body.spin >= 0:

@@ -23,6 +23,7 @@ from mdlgen.mechanics.arm import AXIAL, FORCE_0, INERTIA, STIFFNESS, hung, way_o
 from mdlgen.mechanics.corner import corner_forces
 from mdlgen.mechanics.driven import prescribed
 from mdlgen.mechanics.frame import Motion
+from mdlgen.mechanics.gate import GATE, course, rate_gate, stop
 from mdlgen.mechanics.point import DEPTH, PRESSING, STORED
 from mdlgen.mechanics.turning import turning
 from mdlgen.mechanics.vector import back, dot, mat, rotate, three, vec
@@ -59,12 +60,15 @@ def ledger(work, t, energies, rows):
         energies[group, KINETIC] += kinetic
         energies[group, POTENTIAL] += potential
     for b in range(bodies.size - 1):
+        if bodies[b].swings >= GATE:
+            rate_gate(bodies[b], b, course(bodies[b], t).rate, Motion(x, r, u, w))
+            continue
         slide, spin_at, p = bodies[b].slide, bodies[b].spin, bodies[b].press
         rate = kinetic = elastic = potential = 0.0
         if slide >= 0:
             way = way_of(bodies[b], vec(x, b))
             kinetic += 0.5 * p[INERTIA] * vb[slide] * vb[slide]
-            elastic += 0.5 * p[STIFFNESS] * s[slide] * s[slide]
+            elastic += 0.5 * p[STIFFNESS] * s[slide] * s[slide] + stop(bodies[b], s[slide], vb[slide]).stored
             potential -= p[FORCE_0] * s[slide]
             if bodies[b].swings > 0:
                 potential += hung(bodies[b], s[slide], three(gravity))

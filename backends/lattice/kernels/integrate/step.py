@@ -101,6 +101,7 @@ from mdlgen.mechanics.arm import (
     turn_of,
     way_of,
 )
+from mdlgen.mechanics.gate import stop
 from mdlgen.mechanics.records import FOLLOWER
 from mdlgen.mechanics.vector import back, dot, mat, rotate, three, three_from, vec
 from mdlgen.program.kernel import BORROWS, njit
@@ -130,6 +131,7 @@ def _residual(tables, t, h, state, mid, res, resb):
                 along += dot((f[k, 3], f[k, 4], f[k, 5]), turn_of(bodies[k]))
                 along += torque_of(bodies[k], s[slide] + h * ub[slide], three(gravity), t, h)
             spring = p[FORCE_0] - p[STIFFNESS] * (s[slide] + h * ub[slide]) - p[DAMPING] * ub[slide]
+            spring += stop(bodies[k], s[slide] + h * ub[slide], ub[slide]).force
             resb[slide] = p[INERTIA] * (ub[slide] - vb[slide]) - h * (along + spring)
         if spin_at >= 0:
             axis = bodies[k].axis

@@ -11,6 +11,7 @@ from mdlgen.backends.lattice.kernels.contact.slopes import hat_left, hat_right
 from mdlgen.mechanics.arm import AXIAL, DAMPING, INERTIA, STIFFNESS
 from mdlgen.mechanics.axle import acting
 from mdlgen.mechanics.curve import curve_spring
+from mdlgen.mechanics.gate import stop
 from mdlgen.mechanics.records import FOLLOWER
 from mdlgen.mechanics.vector import (
     add,
@@ -154,17 +155,20 @@ def joints_into(tables, joints, h, lag, x, r, a, slots):
 
 @njit(cache=True, error_model="numpy")
 def rollers_into(tables, h, t, state, d):
-    """Sets the corner to the rollers' own: masses, springs and dampers of slides, clutches and motors at t,
-    which is h after the state."""
-    bodies, axles = tables.bodies, tables.shapes.axles
+    """Sets the corner to the rollers' own: masses, springs, dampers and stops of slides, clutches and motors
+    at t, which is h after the state."""
+    bodies, axles, ub, s = tables.bodies, tables.shapes.axles, state.ub, state.s
     d[:] = 0.0
     for k in tables.moving:
         p = bodies[k].press
         if bodies[k].slide >= 0:
-            d[bodies[k].slide, bodies[k].slide] = p[INERTIA] + h * p[DAMPING] + h * h * p[STIFFNESS]
+            slide = bodies[k].slide
+            d[slide, slide] = p[INERTIA] + h * p[DAMPING] + h * h * p[STIFFNESS]
+            ends = stop(bodies[k], s[slide] + h * ub[slide], ub[slide])
+            d[slide, slide] += h * ends.by_rate + h * h * ends.by_place
         at = bodies[k].spin
         if at >= 0 and bodies[k].coupled != FOLLOWER:
-            d[at, at] = p[AXIAL] + h * acting(axles, bodies[k], state.s[at], state.ub[at], t, h).growth
+            d[at, at] = p[AXIAL] + h * acting(axles, bodies[k], s[at], ub[at], t, h).growth
 
 
 @njit(cache=True, error_model="numpy", **BORROWS)

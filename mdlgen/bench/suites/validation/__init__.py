@@ -13,6 +13,7 @@ from mdlgen.bench.suites.validation import (
     bending,
     driving,
     edges,
+    moving,
     plates,
     poisson,
     rigid,
@@ -22,7 +23,20 @@ from mdlgen.bench.suites.validation import (
     yielding,
 )
 
-GROUPS = (bending, plates, poisson, swinging, yielding, belts, rolling, rigid, rubbing, edges, driving)
+GROUPS = (
+    bending,
+    plates,
+    poisson,
+    swinging,
+    yielding,
+    belts,
+    rolling,
+    rigid,
+    rubbing,
+    edges,
+    driving,
+    moving,
+)
 
 
 def cases(solver: str, reference: str, quick: bool) -> list[BenchCase]:

@@ -1,0 +1,139 @@
+"""Lints of guides, planes and meshes that turn about a pivot or slide."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+import numpy as np
+
+from mdlgen.lints.lint import Lint
+from mdlgen.model.moved import BEYOND, displaced
+from mdlgen.model.overlaps.parts import HAIR
+from mdlgen.model.parts.kinds import kind_of
+from mdlgen.model.tables import Floats, MachinePart, Model, MovingPart
+
+_STATIONS = 25  # places between both ends at which a part is looked at
+_SHARES = np.linspace(0.0, 1.0, 9)  # of each side of a block
+
+
+def sweeps(model: Model) -> Iterator[Lint]:
+    """Parts that a moving one goes through, by its profile, and has no contact with."""
+    met = {frozenset(pair) for pair in zip(model.contacts.part_a, model.contacts.part_b, strict=True)}
+    moving = {part.name for part, _ in model.gates}
+    for gate, motion in model.gates:
+        if motion.free:
+            continue
+        points = _points(kind_of(gate).blocks(gate))
+        low, high = motion.ends
+        moved = displaced(motion, np.linspace(low, high, _STATIONS), points)
+        start = displaced(motion, np.zeros(1), points)
+        for part in model.machine:
+            if part is gate or part.name in moving or frozenset((gate.name, part.name)) in met:
+                continue
+            deep = [_inside(model, part, places) for places in (start, moved)]
+            if deep[0] <= HAIR < deep[1]:
+                yield Lint(
+                    "W173",
+                    _where(gate, motion),
+                    f"on its way it goes through {model.called(part.body)}, {deep[1]:.3g} mm deep at most, "
+                    "and nothing holds them apart",
+                    "shorten its way, or move one of them",
+                )
+
+
+def unused(model: Model) -> Iterator[Lint]:
+    """Positions that no profile goes to; rules may command them."""
+    if getattr(model, "rules", ()):
+        return
+    for part, moving in model.gates:
+        known = set(moving.corners[:, 1].tolist())
+        idle = [
+            name
+            for name, place in zip(moving.names, moving.places.tolist(), strict=True)
+            if place not in known
+        ]
+        if idle:
+            yield Lint(
+                "W174",
+                f"{_where(part, moving)}.positions.{idle[0]}",
+                f"it never goes to {', '.join(idle)}",
+                "name them in its profile, or leave them out",
+            )
+
+
+def late(model: Model) -> Iterator[Lint]:
+    """Profiles that are not at their end as the run is."""
+    for part, moving in model.gates:
+        if not moving.free and len(moving.corners) > 1 and moving.corners[-1, 0] > model.run.duration:
+            yield Lint(
+                "W175",
+                f"{_where(part, moving)}.profile",
+                f"its last corner is at {moving.corners[-1, 0]:g} ms, and the run ends at "
+                f"{model.run.duration:g} ms",
+                "run longer, or move the part earlier",
+            )
+
+
+def unbalanced(model: Model) -> Iterator[Lint]:
+    """Free parts that their spring and weight drive away from where they begin, with no stop there."""
+    for part, moving in model.gates:
+        if not moving.free:
+            continue
+        force = _force(model, moving)
+        stops = moving.stops
+        rests = stops is not None and (stops.low if force < 0.0 else stops.high) == 0.0
+        unit = "N mm" if moving.turns else "N"
+        if abs(force) > 0.0 and not rests:
+            yield Lint(
+                "W176",
+                _where(part, moving),
+                f"as the run begins its spring and weight push it with {force:.3g} {unit}, and no stop holds "
+                "it",
+                f"give a {'torque' if moving.turns else 'force'} that balances its weight, or a stop at 0",
+            )
+
+
+def soft(model: Model) -> Iterator[Lint]:
+    """Stops that give way by more than a run allows under the spring and the weight alone."""
+    for part, moving in model.gates:
+        stops = moving.stops
+        if not moving.free or stops is None:
+            continue
+        far = BEYOND * (stops.high - stops.low)
+        for end, sign in ((stops.low, -1.0), (stops.high, 1.0)):
+            force = sign * (_force(model, moving) - moving.stiffness * end)
+            if force > stops.stiffness * far:
+                yield Lint(
+                    "W177",
+                    f"{_where(part, moving)}.stops",
+                    f"spring and weight alone push the part past its stop by {force / stops.stiffness:.3g} "
+                    f"{'rad' if moving.turns else 'mm'}; a run ends at {far:.3g}",
+                    "make the stops stiffer",
+                )
+
+
+def _where(part: MachinePart, moving: MovingPart) -> str:
+    return f"{kind_of(part).table}.{part.name}.{'pivot' if moving.turns else 'slide'}"
+
+
+def _force(model: Model, moving: MovingPart) -> float:
+    """Force along the motion of a free part at its place 0, or torque."""
+    if moving.turns:
+        return moving.force + float(moving.axis @ np.cross(moving.moment, model.gravity))
+    return moving.force + moving.inertia * float(moving.axis @ model.gravity)
+
+
+def _points(blocks: Floats) -> Floats:
+    """Points all over blocks, (n, 8, 3) corners as of `geometry.solids`; (points, 3)."""
+    begin = blocks[:, 0]
+    sides = np.stack([blocks[:, k] - begin for k in (1, 2, 4)], axis=1)
+    shares = np.stack(np.meshgrid(_SHARES, _SHARES, _SHARES, indexing="ij"), axis=-1).reshape(-1, 3)
+    return (begin[:, None] + np.einsum("pk,bki->bpi", shares, sides)).reshape(-1, 3)
+
+
+def _inside(model: Model, part: MachinePart, places: Floats) -> float:
+    """How deep places (k, n, 3) are in a part at most [mm]."""
+    bodies, kind = model.bodies, kind_of(part)
+    middle = np.broadcast_to(places.mean(axis=1, keepdims=True), places.shape)
+    deep = kind.inside(part, places, middle, bodies.position[part.body], bodies.rotation[part.body])
+    return 0.0 if deep is None else float(deep.max())

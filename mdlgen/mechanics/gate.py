@@ -1,0 +1,219 @@
+"""Plates and meshes that a law of time moves, or forces: they turn about a fixed axis or slide along a line.
+
+A prescribed one has `swings` TURNS or SLIDES in its body record, no unknowns, and its law in `drive`: time,
+place and rate of each of its `corners` in turn. Places are angles [rad] or ways [mm] from where the body is
+given. Between two corners the law is the cubic with their places and rates, so place and velocity are
+continuous; without rates it goes by 3 s^2 - 2 s^3 of the way, s the share of the time. Before the first
+corner and after the last one the body stands.
+
+A free one is like what is pressed or on an arm (mechanics.arm): its place is the unknown of its `slide`. Its
+`stops` are two places, beyond which a spring k z with the damping of Eq. 11 acts: 1 + beta s(rate), z being
+how far it is beyond, and s the sign of the rate of z. It changes over rates of BLUNT omega z, where
+omega^2 = k/inertia: so the restitution does not depend on the speed.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import NamedTuple
+
+import numpy as np
+
+from mdlgen.mechanics.arm import AXIAL
+from mdlgen.mechanics.laws import damping_share, sign_step
+from mdlgen.mechanics.vector import add, cross, dot, exp_rotation, mat, matmul, rotate, scale, sub, three, vec
+from mdlgen.model.limits import MOST_CORNERS, MOST_PLACES
+from mdlgen.model.tables import Floats, MovingPart
+from mdlgen.program.kernel import BORROWS, njit
+
+# Of `swings`: from GATE on a law of time moves the body.
+GATE, TURNS, SLIDES = 3, 3, 4
+WIDE = 3  # numbers of a corner
+# Of a record's `stops`: places of both, stiffness (0: there are none), beta, and BLUNT omega [1/ms].
+LOW, HIGH, STOP, SHARE, OVER = 0, 1, 2, 3, 4
+STOPS = [("stops", "f8", 5)]
+# Of the speed of an impact, below which the damping of a stop changes its sign. At 0.05 a restitution of 0.2
+# comes out 1 % too high, greater ones less.
+BLUNT = 0.05
+
+assert WIDE * MOST_PLACES <= 2 * MOST_CORNERS, "the corners of a gate fill the room of a drive's"
+
+
+class Course(NamedTuple):
+    """Place and rate of a gate at a time."""
+
+    place: float
+    rate: float
+
+
+class Stop(NamedTuple):
+    """What a stop does: its force along the motion, what that loses as the place and as the rate grow, the
+    energy that it stores, and the power that it dissipates."""
+
+    force: float
+    by_place: float
+    by_rate: float
+    stored: float
+    lost: float
+
+
+def gate(row: np.void, moving: MovingPart, length: float, mass: float, time: float) -> None:
+    """Fills a body record of a part that moves; the factors are a millimetre, a gram and a millisecond in the
+    solver's units, where a newton stays one."""
+    row["pivot"] = moving.pivot * length
+    row["turn" if moving.turns else "way"] = moving.axis
+    if not moving.free:
+        row["swings"] = TURNS if moving.turns else SLIDES
+        unit = 1.0 if moving.turns else length
+        write(row, moving.corners * (time, unit, unit / time))
+        return
+    # a spring of a pivot is in N mm/rad, one of a slide in N/mm
+    unit = length if moving.turns else 1.0 / length
+    push = length if moving.turns else 1.0
+    inertia = moving.inertia * mass * (length**2 if moving.turns else 1.0)
+    row["press"][:AXIAL] = (
+        moving.stiffness * unit,
+        moving.damping * unit * time,
+        moving.force * push,
+        inertia,
+    )
+    if moving.turns:  # as the arm of a driven roller, which turns with it
+        row["swings"], row["carries"], row["axis"] = 2, 1, moving.axis
+        row["mass"], row["hang"] = 0.0, moving.moment * mass * length
+    if moving.stops is not None:
+        own = moving.stops
+        beta = damping_share.py_func(own.restitution)
+        along = 1.0 if moving.turns else length
+        omega = math.sqrt(own.stiffness * unit / inertia)
+        row["stops"] = (own.low * along, own.high * along, own.stiffness * unit, beta, BLUNT * omega)
+
+
+def write(row: np.void, corners: Floats) -> None:
+    """Writes the corners (n, 3) of a law, in the solver's units, into a body record."""
+    row["corners"] = len(corners)
+    row["drive"] = 0.0
+    row["drive"][: corners.size] = np.asarray(corners).ravel()
+
+
+def command(bodies: np.ndarray, row: int, t: float, value: float, duration: float) -> None:
+    """Sends the gate of a body record to a place: rewrites its law from the time t on. In `duration` it goes
+    from where it is at t, with the speed that it has there, to `value`, where it stands. All in the solver's
+    units. The law before t is lost: a step that is taken afterwards must not begin before t.
+
+    Raises ValueError where the body is no gate or the duration is not above 0.
+    """
+    body = bodies[row]
+    if body["swings"] < GATE:
+        raise ValueError(f"body {row} has no law of its place that could be rewritten")
+    if not duration > 0.0:
+        raise ValueError(f"a gate cannot move within {duration:g}; allowed: a duration above 0")
+    now = course.py_func(bodies.view(np.recarray)[row], t)
+    write(body, np.array([[t, now.place, now.rate], [t + duration, value, 0.0]]))
+
+
+@njit(cache=True, error_model="numpy", **BORROWS)
+def course(body, t):
+    """The Course of a gate at a time."""
+    corners = body.drive
+    last = WIDE * (body.corners - 1)
+    if last < 0:
+        return Course(0.0, 0.0)
+    if t <= corners[0]:
+        return Course(corners[1], corners[2] if t == corners[0] else 0.0)
+    for i in range(0, last, WIDE):
+        if t < corners[i + WIDE]:
+            span = corners[i + WIDE] - corners[i]
+            s = (t - corners[i]) / span
+            way = corners[i + WIDE + 1] - corners[i + 1]
+            begun, ended = span * corners[i + 2], span * corners[i + WIDE + 2]
+            place = s * s * (3.0 - 2.0 * s) * way + s * (1.0 - s) * ((1.0 - s) * begun - s * ended)
+            rate = 6.0 * s * (1.0 - s) * way
+            rate += (1.0 - s) * (1.0 - 3.0 * s) * begun - s * (2.0 - 3.0 * s) * ended
+            return Course(corners[i + 1] + place, rate / span)
+    return Course(corners[last + 1], 0.0)
+
+
+@njit(cache=True, error_model="numpy", **BORROWS)
+def went(body, t, until):
+    """By how much the place of a gate changes from t until then."""
+    return course(body, until).place - course(body, t).place
+
+
+@njit(cache=True, error_model="numpy", **BORROWS)
+def shift_gate(body, b, way, x, r, xm, rm):
+    """Moves body b by a change of its place, from places x and rotations r to xm and rm, which may be the
+    same."""
+    at = vec(x, b)
+    m = mat(r, b)
+    if body.swings == SLIDES:
+        at = add(at, scale(way, three(body.way)))
+    else:
+        turn, pivot = exp_rotation(scale(way, three(body.turn))), three(body.pivot)
+        at = add(pivot, rotate(turn, sub(at, pivot)))
+        m = matmul(turn, m)
+    for i in range(3):
+        xm[b, i] = at[i]
+    for i in range(9):
+        rm[b, i] = m[i]
+
+
+@njit(cache=True, error_model="numpy", **BORROWS)
+def rate_gate(body, b, rate, motion):
+    """Sets velocity and angular velocity of body b where it stands in a Motion, by the rate of its place."""
+    way = three(body.way)
+    spin = (0.0, 0.0, 0.0)
+    if body.swings == TURNS:
+        spin = scale(rate, three(body.turn))
+        way = cross(three(body.turn), sub(vec(motion.x, b), three(body.pivot)))
+    for i in range(3):
+        motion.u[b, i], motion.w[b, i] = rate * way[i], spin[i]
+
+
+@njit(cache=True, error_model="numpy", **BORROWS)
+def middle_of_gate(body, b, h, t, x, r, motion):
+    """Places body b in the middle t of a step of 2 h, halfway between both ends and at the mean rate, as the
+    unknowns of the step have it."""
+    way = went(body, t - h, t + h)
+    shift_gate(body, b, 0.5 * way, x, r, motion.x, motion.r)
+    rate_gate(body, b, 0.5 * way / h if h > 0.0 else course(body, t).rate, motion)
+
+
+@njit(cache=True, error_model="numpy", **BORROWS)
+def gate_at(body, b, t, until, x, r, motion):
+    """Places body b, at x and r at the time t, where its law has it at a later time."""
+    shift_gate(body, b, went(body, t, until), x, r, motion.x, motion.r)
+    rate_gate(body, b, course(body, until).rate, motion)
+
+
+@njit(cache=True, error_model="numpy", **BORROWS)
+def power_of(motion, b, force, torque):
+    """What a force and a torque on body b do by its motion."""
+    return dot(force, vec(motion.u, b)) + dot(torque, vec(motion.w, b))
+
+
+@njit(cache=True, error_model="numpy", **BORROWS)
+def fastest_of_gate(body, x, b, t):
+    """How fast a place of a plate moves at most."""
+    rate = abs(course(body, t).rate)
+    if body.swings == SLIDES:
+        return rate
+    way, half = cross(three(body.turn), sub(vec(x, b), three(body.pivot))), three(body.half)
+    return rate * (math.sqrt(dot(way, way)) + math.sqrt(dot(half, half)))
+
+
+@njit(cache=True, error_model="numpy", **BORROWS)
+def stop(body, place, rate):
+    """The Stop of a body at a place and a rate of it."""
+    stops = body.stops
+    if stops[STOP] == 0.0 or stops[LOW] <= place <= stops[HIGH]:
+        return Stop(0.0, 0.0, 0.0, 0.0, 0.0)
+    side = 1.0 if place > stops[HIGH] else -1.0
+    z = place - stops[HIGH] if side > 0.0 else stops[LOW] - place
+    over, k, beta = stops[OVER] * z, stops[STOP], stops[SHARE]
+    x = min(max(side * rate / over, -1.0), 1.0)
+    sign = sign_step(x, 1.0)
+    by_rate = 1.5 * (1.0 - x * x) * k * beta / stops[OVER]
+    # of k z (1 + beta s(x)), x falling as 1/z does
+    by_place = k * (1.0 + beta * x * x * x)
+    damps = k * z * beta * sign
+    return Stop(-side * (k * z + damps), by_place, by_rate, 0.5 * k * z * z, damps * side * rate)
