@@ -1,0 +1,48 @@
+"""Sheets that come in and leave during a run."""
+
+from __future__ import annotations
+
+import math
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from mdlgen.model.tables import Floats, Model, SheetPart
+
+if TYPE_CHECKING:
+    from mdlgen.spec.sheet import Sheet
+
+
+def planes_out(sheet: Sheet) -> tuple[tuple[int, float, float], ...]:
+    """The planes beyond which a sheet has left, as `SheetPart.out` has them: the side is the one on which it
+    does not come in."""
+    found = []
+    for out in sheet.out:
+        if out.axis is not None and out.at is not None:
+            axis = "xyz".index(out.axis)
+            found.append((axis, float(out.at), math.copysign(1.0, out.at - sheet.center[axis])))
+    return tuple(found)
+
+
+def passing(model: Model) -> bool:
+    """Whether a sheet of a Model may come in or leave during a run."""
+    return any(sheet.passes for sheet in model.sheets)
+
+
+def at_start(model: Model) -> list[bool]:
+    """Of each sheet whether it is there as the run begins."""
+    return [sheet.enters == 0.0 for sheet in model.sheets]
+
+
+def far(model: Model, sheet: SheetPart, position: Floats, rotation: Floats) -> Floats:
+    """How far all of a sheet is beyond each of its planes [mm], (planes,), below 0: it is not, yet.
+
+    `position` (n, 3) [mm] and `rotation` (n, 3, 3) or (n, 9) are of all bodies.
+    """
+    boxes = slice(sheet.first, sheet.first + sheet.count)
+    half, turn = model.bodies.half[boxes], np.abs(rotation[boxes]).reshape(-1, 3, 3)
+    found = [
+        (side * (position[boxes, axis] - at) - (turn[:, axis] * half).sum(axis=1)).min()
+        for axis, at, side in sheet.out
+    ]
+    return np.array(found)
