@@ -6,6 +6,7 @@ import math
 from typing import TYPE_CHECKING
 
 import numpy as np
+from numpy.typing import NDArray
 
 from mdlgen.model.tables import Floats, Model, SheetPart
 
@@ -34,12 +35,17 @@ def at_start(model: Model) -> list[bool]:
     return [sheet.enters == 0.0 for sheet in model.sheets]
 
 
-def far(model: Model, sheet: SheetPart, position: Floats, rotation: Floats) -> Floats:
+def far(
+    model: Model, sheet: SheetPart, position: Floats, rotation: Floats, solved: NDArray[np.bool_] | None = None
+) -> Floats:
     """How far all of a sheet is beyond each of its planes [mm], (planes,), below 0: it is not, yet.
 
-    `position` (n, 3) [mm] and `rotation` (n, 3, 3) or (n, 9) are of all bodies.
+    `position` (n, 3) [mm] and `rotation` (n, 9) are of all bodies; `solved` (n,): those whose places are
+    known, None: all.
     """
-    boxes = slice(sheet.first, sheet.first + sheet.count)
+    boxes = np.arange(sheet.first, sheet.first + sheet.count)
+    if solved is not None:
+        boxes = boxes[solved[boxes]]
     half, turn = model.bodies.half[boxes], np.abs(rotation[boxes]).reshape(-1, 3, 3)
     found = [
         (side * (position[boxes, axis] - at) - (turn[:, axis] * half).sum(axis=1)).min()

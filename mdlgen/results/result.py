@@ -67,6 +67,9 @@ class Energy:
     of: tuple[str, ...] = ()
     # the part of `dissipated` that yielding took; None: nothing in the scene yields
     plastic: float | None = None
+    # kinetic, elastic and potential energy that came in, and that left, with sheets; None: none does
+    entered: float | None = None
+    left: float | None = None
 
 
 @dataclass(frozen=True)
@@ -108,6 +111,8 @@ class Result:
     contact_friction: Floats | None = None
     # plastic rotation of each row of Model.plastic [rad], (t, rows); None: nothing in the scene yields
     plastic: Floats | None = None
+    # when each sheet came in and left [ms], nan: it did not, (sheets, 2); None: all are there throughout
+    stays: Floats | None = None
     touched: int = 0  # pairs that touched at any step
     energy: Energy = field(default_factory=Energy)
     step: float = 0.0  # [ms]

@@ -1,0 +1,135 @@
+"""Sheets that come in and leave during a pass.
+
+A step ends where a sheet comes in, so that it does so at its time with its given state. Where one leaves is
+found by Newton's method over steps: a step ends where the sheet would be beyond its plane at the velocity that
+it has, until it is near enough. What lies asleep where it is to leave at rest leaves as it falls asleep.
+"""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+from numpy.typing import NDArray
+
+from mdlgen.backends.lattice.integrate.record import Recorder
+from mdlgen.backends.lattice.integrate.sleep import Sleep
+from mdlgen.model.overlaps.unheld import Unheld
+from mdlgen.model.passing import at_start, far, passing
+from mdlgen.model.tables import Floats, Model
+
+# Of what run.tolerance lets a place be off: nearer than this to being beyond a plane a sheet is there.
+NEAR = 0.01
+# Of a step: nearer than this to the end of one an event is there. A step so short, of a run of 1e6 steps, is
+# as long as the round-off of its times.
+SAME = 1e-9
+
+
+class Passing:
+    """Which sheets of a pass are there."""
+
+    def __init__(self, model: Model, sleep: Sleep, recorder: Recorder, dt: float, overlaps: Unheld):
+        """`dt`: the step [ms]."""
+        self.active = passing(model)
+        self._model, self._sleep, self._recorder, self._slack = model, sleep, recorder, SAME * dt
+        self._overlaps = overlaps
+        self.enters = np.array([sheet.enters for sheet in model.sheets])
+        self.enters[np.isnan(self.enters)] = math.inf
+        if self.active:
+            self.stays = np.full((len(model.sheets), 2), np.nan)
+            self.stays[at_start(model), 0] = 0.0
+            recorder.stays = self.stays
+
+    @property
+    def there(self) -> NDArray[np.bool_] | None:
+        """Which sheets are there, (sheets,); None: all."""
+        return ~self._sleep.gone if self.active else None
+
+    def enter(self, sheet: int, t: float) -> None:
+        """A sheet that has not come yet comes in at a time [ms], not before the one that the pass is at."""
+        if math.isnan(self.stays[sheet, 0]):
+            self.enters[sheet] = t
+
+    def exact(self, t: float) -> float:
+        """The time of a sheet that comes in at t, but for round-off; else t."""
+        near = self.enters[np.abs(self.enters - t) <= self._slack] if self.active else ()
+        return float(near[0]) if len(near) else t
+
+    def cut(self, t: float, steps: Floats) -> Floats:
+        """The steps from t on, or those of them up to where the next sheet comes in or leaves."""
+        if not self.active:
+            return steps
+        due = self._next(t) - t
+        ends = np.cumsum(steps)
+        if not due < ends[-1] - self._slack:
+            return steps
+        whole = int(np.searchsorted(ends, due + self._slack, side="right"))
+        rest = due - (ends[whole - 1] if whole else 0.0)
+        return np.append(steps[:whole], rest) if rest > self._slack else steps[:whole]
+
+    def _next(self, t: float) -> float:
+        """When the next sheet comes in, or would leave at the velocity that it has [ms]."""
+        late = self.enters[self._sleep.gone & np.isnan(self.stays[:, 0])]
+        found = float(late.min(initial=math.inf))
+        for k in np.flatnonzero(~self._sleep.gone).tolist():
+            sheet = self._model.sheets[k]
+            if not sheet.out:
+                continue
+            state, own = self._sleep.work.state, self._sleep.system.sheets == k
+            if not own.any():
+                continue  # it is asleep
+            rate = state.u[own, :3].mean(axis=0)
+            for (axis, _, side), gap in zip(sheet.out, -self._far(k), strict=True):
+                speed = side * float(rate[axis])
+                if speed > 0.0:
+                    found = min(found, t + max(float(gap), 0.0) / speed)
+        return found
+
+    def _far(self, k: int) -> Floats:
+        """See model.passing.far, of a sheet by its number."""
+        state = self._sleep.work.state
+        return far(self._model, self._model.sheets[k], state.x, state.r, self._overlaps.solved)
+
+    def turn(self, t: float) -> bool:
+        """Lets sheets leave and come in that do so at t; False: one cannot, see `taken`."""
+        if not self.active:
+            return True
+        sleep, leaves = self._sleep, self._leaving()
+        if leaves.any():
+            self._recorder.booked[1] -= sleep.change(sleep.gone | leaves, t)
+            self.stays[leaves, 1] = t
+        comes = self._coming(t)
+        if comes.any():
+            if self.taken(t) is not None:
+                return False
+            self._recorder.booked[0] += sleep.change(sleep.gone & ~comes, t)
+            self.stays[comes, 0] = t
+        return True
+
+    def _coming(self, t: float) -> NDArray[np.bool_]:
+        return self._sleep.gone & np.isnan(self.stays[:, 0]) & (self.enters <= t + self._slack)
+
+    def _leaving(self) -> NDArray[np.bool_]:
+        leaves = self._sleep.asleep & [sheet.out_at_rest for sheet in self._model.sheets]
+        for k in np.flatnonzero(~self._sleep.gone).tolist():
+            sheet = self._model.sheets[k]
+            near = NEAR * self._model.run.tolerance * max(sheet.size) / 10.0
+            leaves[k] |= bool(sheet.out) and bool((self._far(k) >= -near).any())
+        return leaves
+
+    def taken(self, t: float) -> str | None:
+        """Why a sheet cannot come in at t: another one is where it comes in; None: none is."""
+        comes, state = self._coming(t), self._sleep.work.state
+        there = ~self._sleep.gone | comes
+        for one in np.flatnonzero(comes).tolist():
+            for other in np.flatnonzero(there).tolist():
+                if other == one or (comes[other] and other < one):
+                    continue
+                deep = self._overlaps.in_each_other(one, other, state.x, state.r)
+                if deep > 0.0:
+                    names = [self._model.sheets[k].name for k in (one, other)]
+                    return (
+                        f"sheet {names[0]} comes in at {t:.6g} ms where sheet {names[1]} still is: they overlap "
+                        f"by {deep:.3g} mm; let it come in later, or elsewhere"
+                    )
+        return None
