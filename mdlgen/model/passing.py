@@ -35,8 +35,22 @@ def at_start(model: Model) -> list[bool]:
     return [sheet.enters == 0.0 for sheet in model.sheets]
 
 
+def begun_stays(model: Model) -> Floats | None:
+    """`Result.stays` as a run begins: 0 and nan of sheets that are there, nan of others, (sheets, 2); None where
+    no sheet comes in or leaves."""
+    if not passing(model):
+        return None
+    stays = np.full((len(model.sheets), 2), np.nan)
+    stays[at_start(model), 0] = 0.0
+    return stays
+
+
 def far(
-    model: Model, sheet: SheetPart, position: Floats, rotation: Floats, solved: NDArray[np.bool_] | None = None
+    model: Model,
+    sheet: SheetPart,
+    position: Floats,
+    rotation: Floats,
+    solved: NDArray[np.bool_] | None = None,
 ) -> Floats:
     """How far all of a sheet is beyond each of its planes [mm], (planes,), below 0: it is not, yet.
 

@@ -16,6 +16,7 @@ from mdlgen.model.tables import Floats, Model, RollerPart
 from mdlgen.results.contact_line import contact_line
 from mdlgen.results.creep import creeps
 from mdlgen.results.held import holds
+from mdlgen.results.passing import passages, there
 from mdlgen.results.stacked import stacked
 from mdlgen.results.stays import SHORT, Stay, intervals, stays_at_meshes, stays_of
 from mdlgen.results.stubs import stops
@@ -24,7 +25,7 @@ from mdlgen.units import PER_SECOND
 if TYPE_CHECKING:
     from mdlgen.results.result import Result
 
-KINDS = ("enter", "leave", "slip", "gap", "wait", "jam", "double_feed", "stub", "creep")
+KINDS = ("entered", "left", "enter", "leave", "slip", "gap", "wait", "jam", "double_feed", "stub", "creep")
 # A sheet that is slower than this [mm/ms] stands: smoothed friction lets what waits under a force creep.
 # One that is slower than this part of another one at the same roller is held back while that one is fed.
 STANDS, HELD_PART = 0.01, 0.1
@@ -34,7 +35,8 @@ def events(result: Result) -> list[dict[str, Any]]:
     """Every event as an object with `time_ms`, `kind`, `sheet`, `roller` (of a stub `part`, of a creep
     `held_by`) and numbers, by time.
 
-    Kinds: `enter` and `leave`; `slip`, one for each stay of a sheet at a roller; `gap`, where a sheet enters
+    Kinds: `entered` and `left`, of a sheet that comes in and leaves during the run; `enter` and `leave`;
+    `slip`, one for each stay of a sheet at a roller; `gap`, where a sheet enters
     a roller that another one was at before; `wait`; `jam`; `double_feed`; `stub`, where the end of a
     plate stops a sheet; `creep`, where regularised friction holds one. A sheet that touches at the start
     enters at 0. docs/reference/events.md says what the numbers are.
@@ -48,12 +50,13 @@ def events(result: Result) -> list[dict[str, Any]]:
     found += _double_feeds(result, [*stays, *_beyond(result, stays, together)])
     found += _stubs(result)
     found += _creeps(result)
+    found += passages(result)
     order = {"leave": 0, "enter": 1}
     return sorted(found, key=lambda e: (e["time_ms"], order.get(e["kind"], 2), _place(e), e["sheet"]))
 
 
 def _place(event: dict[str, Any]) -> str:
-    return event.get("roller") or event.get("part") or event["held_by"][0]
+    return event.get("roller") or event.get("part") or next(iter(event.get("held_by", ())), "")
 
 
 def _stubs(result: Result) -> list[dict[str, Any]]:
@@ -170,7 +173,7 @@ def _faces(roller: RollerPart, other: RollerPart) -> bool:
 
 def _gaps(result: Result, stays: list[Stay]) -> list[dict[str, Any]]:
     """The distance along the way from the end of the sheet that went before to the start of the next."""
-    found = []
+    found, here_now = [], there(result)
     for roller in result.model.rollers:
         here = sorted((s for s in stays if s.roller is roller), key=lambda s: s.first)
         for before, stay in pairwise(here):
@@ -182,9 +185,10 @@ def _gaps(result: Result, stays: list[Stay]) -> list[dict[str, Any]]:
                 continue
             ahead = _reach(result, before.sheet, stay.first, rate / fast)
             behind = _reach(result, stay.sheet, stay.first, rate / fast)
+            known = here_now is None or here_now[stay.first, before.sheet]  # one that has left is nowhere
             numbers: dict[str, Any] = {
                 "before": result.model.sheets[before.sheet].name,
-                "gap_mm": ahead[0] - behind[1],
+                "gap_mm": ahead[0] - behind[1] if known else None,
                 "gap_ms": None,
             }
             if before.leaves and before.last < stay.first:

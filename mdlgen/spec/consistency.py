@@ -11,9 +11,9 @@ from pydantic_core import PydanticCustomError
 from mdlgen.spec.action import OnSheet
 from mdlgen.spec.between import known
 from mdlgen.spec.nip import names_of as rollers_of
+from mdlgen.spec.passing import as_written, check_passing, check_stream
 from mdlgen.spec.pile import names_of as sheets_of
 from mdlgen.spec.require import requirement
-from mdlgen.spec.passing import as_written, check_passing, check_stream
 from mdlgen.spec.strict import fail
 from mdlgen.units import exact_quantity
 

@@ -35,7 +35,8 @@ class Nip(Strict):
     )
     axis: Direction = Field(default=(0.0, 1.0, 0.0), description="axis of both rollers; y where left out")
     sheet: Name | None = Field(
-        default=None, description="the sheet, or stream, between them; may be left out where there is one sheet only"
+        default=None,
+        description="the sheet, or stream, between them; may be left out where there is one sheet only",
     )
     force: Annotated[float, quantity("N", 0.0, open_low=True)] = Field(
         description="force with which each roller presses the sheet, at rest"

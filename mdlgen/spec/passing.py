@@ -5,8 +5,8 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from mdlgen.spec.between import known
-from mdlgen.spec.strict import fail
 from mdlgen.spec.stream import names_of
+from mdlgen.spec.strict import fail
 
 if TYPE_CHECKING:
     from mdlgen.spec.scene import Scene

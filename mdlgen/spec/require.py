@@ -13,7 +13,7 @@ from dataclasses import dataclass
 from mdlgen.errors import did_you_mean
 from mdlgen.units import parse_number, parse_quantity, parse_unit, same
 
-EVENTS = ("enter", "leave", "slip", "gap", "wait", "jam", "double_feed", "stub", "creep")
+EVENTS = ("entered", "left", "enter", "leave", "slip", "gap", "wait", "jam", "double_feed", "stub", "creep")
 FORMS = (
     "no EVENT [at PART], MEASURE below VALUE, MEASURE above VALUE, MEASURE within VALUE [of VALUE], "
     "MEASURE from VALUE to VALUE, with at TIME or throughout behind the last four"

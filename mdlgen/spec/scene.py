@@ -183,7 +183,7 @@ class Scene(Strict):
 
     @property
     def sheets_of_piles(self) -> dict[str, Any]:
-        """The sheets that piles and streams are of, as they are written: no sheet has their names any more."""
+        """The sheets that piles and streams are of, as they are written: no sheet has their names."""
         return self._sheets_of_piles
 
     @property

@@ -13,8 +13,8 @@ from mdlgen.spec.document import Document, SpecPath, parse
 from mdlgen.spec.nip import contacts_of
 from mdlgen.spec.nip import names_of as rollers_of
 from mdlgen.spec.pile import names_of as sheets_of
-from mdlgen.spec.stream import names_of as sheets_of_stream
 from mdlgen.spec.rows import KINDS, expanded
+from mdlgen.spec.stream import names_of as sheets_of_stream
 
 _PATTERN = re.compile(r"[*?]")
 WORD = re.compile(r"[A-Za-z0-9_*?]{1,64}")  # of a path

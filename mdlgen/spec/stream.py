@@ -27,9 +27,9 @@ def _when(schema: dict[str, Any]) -> None:
 class Stream(Strict):
     """Sheets that come in one after another: NAME_1, NAME_2 and so on, with as many digits as the last one.
 
-    They are sheets as all others. A contact, and a nip, means all of them by the name of the stream, or of the
-    sheet that they are of; by their own names it means some. Sheets of a stream touch each other only where
-    a contact says so, as `between: [NAME, NAME]`.
+    They are sheets as all others. A contact, and a nip, means all of them by the name of the stream, or of
+    the sheet that they are of; by their own names it means some. Sheets of a stream touch each other only
+    where a contact says so, as `between: [NAME, NAME]`.
     """
 
     model_config = ConfigDict(json_schema_extra=_when)
@@ -79,8 +79,8 @@ class Stream(Strict):
         given = [name for name in ("every", "times") if getattr(self, name) is not None]
         given += ["by_rule"] if self.by_rule else []
         if len(given) != 1:
-            message = f"{' and '.join(given)} are given; give one of them" if given else "when do they come in?"
-            raise fail(f"{message}{'' if given else ' give every and count, times, or by_rule: true'}")
+            asked = "when do they come in? give every and count, times, or by_rule: true"
+            raise fail(f"{' and '.join(given)} are given; give one of them" if given else asked)
         if self.times is None and self.count is None:
             raise fail(f"how many are there? give count, as count: 20, with {given[0]}")
         if self.times is not None and self.count not in (None, len(self.times)):

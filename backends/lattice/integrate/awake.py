@@ -1,5 +1,5 @@
-"""The part of a System that is awake: sheets that sleep are parts that do not move there, and sheets that have
-not come yet, or have left, are none.
+"""The part of a System that is awake: sheets that sleep are parts that do not move there, and sheets
+that have not come yet, or have left, are none.
 
 As with a scene that is halved (symmetry.mirror), the same kernels run on fewer nodes, joints and pairs.
 Bodies keep their numbers, contacts their rows.
@@ -23,7 +23,7 @@ class Parts:
         number = {sheet.name: k for k, sheet in enumerate(model.sheets)}
         table = model.contacts
         ends = (table.part_a, table.part_b)
-        self.sheets = np.array([[number.get(name, -1) for name in end] for end in ends]).reshape(2, -1)
+        self.sheets = np.array([[number.get(name, -1) for name in end] for end in ends], int).reshape(2, -1)
         self.moves = np.zeros(len(table), bool)
         pairs = system.pairs[: system.search.first]
         self.moves[pairs["row"]] = _moves(model, system)[pairs["b"]]
@@ -34,7 +34,8 @@ class Parts:
 
     def of(self, some: NDArray[np.bool_]) -> NDArray[np.bool_]:
         """Contacts of some sheets with anything, (contacts,)."""
-        return (some[np.maximum(self.sheets, 0)] & (self.sheets >= 0)).any(axis=0)
+        own = some[np.maximum(self.sheets, 0)] & (self.sheets >= 0)
+        return own[0] | own[1]
 
     def lasting(self, asleep: NDArray[np.bool_]) -> NDArray[np.bool_]:
         """Contacts of sheets that sleep with each other and with what does not move, (contacts,)."""
@@ -69,8 +70,8 @@ def _moves(model: Model, system: System) -> NDArray[np.bool_]:
 def awake(
     system: System, parts: Parts, asleep: NDArray[np.bool_], gone: NDArray[np.bool_] | None = None
 ) -> tuple[System, Ints]:
-    """The System with the sheets that are `asleep` (sheets,) as parts that do not move, and without those that
-    are `gone` (sheets,), in arrays of its own, and which of the pairs before those that are searched it
+    """The System with the sheets that are `asleep` (sheets,) as parts that do not move, and without those
+    that are `gone` (sheets,), in arrays of its own, and which of the pairs before those that are searched it
     has."""
     lasting = parts.lasting(asleep)
     if gone is not None:

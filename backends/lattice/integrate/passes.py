@@ -177,7 +177,7 @@ class _Pass:
         self._recorder = Recorder(model, system, work, divided.outputs)
         self._overlaps = unheld(model, system)
         self._sleep = Sleep(model, system, work, steering, self._recorder, watch.sleeps, there)
-        self._passing = Passing(model, self._sleep, self._recorder, divided.step, self._overlaps)
+        self.passing = Passing(model, self._sleep, self._recorder, divided.step, self._overlaps)
         self._recorder.store(0.0)
         # the guess of a step is the better the finer it is: what is left of it must fall as fast
         part = ROUND_OFF if flexible(model) else ROUND_OFF_RIGID
@@ -240,7 +240,7 @@ class _Pass:
             if looks.due(goal):
                 self._t = looks.time(goal)
                 self._sleep.look(self._t, self._tolerance)
-                status = _seen(self._sleep, self._system, self._overlaps, self._t, self._passing.there)
+                status = _seen(self._sleep, self._system, self._overlaps, self._t, self.passing.there)
                 if status != integrate.DONE:
                     if not stored:
                         self._recorder.store(self._t)
@@ -254,14 +254,14 @@ class _Pass:
         while left.size:
             if stop is not None and stop.is_set():
                 raise Stopped
-            if not self._passing.turn(t):
+            if not self.passing.turn(t):
                 return TAKEN, t
             began, many, since = t, self._calls.many, clock.perf_counter()
             some = left[:many]
-            steps = self._passing.cut(t, some)
-            status, t = integrate.run(sleep.work, t, steps, self._tolerance, sleep.steering)
+            taken, whole = self.passing.cut(t, some)
+            status, t = integrate.run(sleep.work, t, taken, self._tolerance, sleep.steering)
             took = clock.perf_counter() - since
-            self._calls.took(len(steps), took)
+            self._calls.took(len(taken), took)
             self._slow.tell(t, left[0], took)
             if fresh and t > began:
                 self._recorder.between()
@@ -270,11 +270,11 @@ class _Pass:
                 return LIMITED, t
             if status == integrate.DONE and self._counters[STEPS] > self._most:
                 return CRAWLED, t
-            if status == integrate.DONE and steps is not some:
-                t = self._passing.exact(t)
+            if status == integrate.DONE and not whole:
+                t = self.passing.exact(t)
                 left = self._looks.left(goal, t, dt)
             elif status == integrate.DONE:
-                left = left[many:]
+                left = left[len(taken) :]
             elif status == integrate.WOKEN:
                 sleep.wake(int(self._counters[WORST]), t)
                 left = self._looks.left(goal, t, dt)
@@ -309,8 +309,8 @@ class _Pass:
         dt, sleep, reason = self._divided.step, self._sleep, None
         if status != integrate.DONE:
             state = sleep.work.state
-            at = sleep.system, status, self._t, dt, state, self._counters, self._passing.there
-            reason = self._passing.taken(self._t) if status == TAKEN else reason_of(self._model, *at)
+            at = sleep.system, status, self._t, dt, state, self._counters, self.passing.there
+            reason = self.passing.taken(self._t) if status == TAKEN else reason_of(self._model, *at)
         result = self._recorder.result("lattice", reason, self._energies)
         result.step, result.steps = dt, int(self._counters[STEPS])
         result.rounds, result.wall_s = int(self._counters[ITERATIONS]), wall
@@ -330,9 +330,7 @@ class _Pass:
         return result.failed(wrong if result.ok else f"{result.status}; and {wrong}")
 
 
-def _seen(
-    sleep: Sleep, system: System, overlaps: Unheld, t: float, there: NDArray[np.bool_] | None
-) -> int:
+def _seen(sleep: Sleep, system: System, overlaps: Unheld, t: float, there: NDArray[np.bool_] | None) -> int:
     """integrate.DONE, or why a pass cannot go on from its state at the time t; `there` (sheets,): sheets that
     are, None: all."""
     state, mirror = sleep.work.state, sleep.system.mirror

@@ -1,8 +1,8 @@
 """Sheets that come in and leave during a pass.
 
 A step ends where a sheet comes in, so that it does so at its time with its given state. Where one leaves is
-found by Newton's method over steps: a step ends where the sheet would be beyond its plane at the velocity that
-it has, until it is near enough. What lies asleep where it is to leave at rest leaves as it falls asleep.
+found by Newton's method over steps: a step ends where the sheet would be beyond its plane at the velocity
+that it has, until it is near enough. A sheet that is to leave at rest does so as it falls asleep.
 """
 
 from __future__ import annotations
@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 from mdlgen.backends.lattice.integrate.record import Recorder
 from mdlgen.backends.lattice.integrate.sleep import Sleep
 from mdlgen.model.overlaps.unheld import Unheld
-from mdlgen.model.passing import at_start, far, passing
+from mdlgen.model.passing import begun_stays, far
 from mdlgen.model.tables import Floats, Model
 
 # Of what run.tolerance lets a place be off: nearer than this to being beyond a plane a sheet is there.
@@ -30,15 +30,13 @@ class Passing:
 
     def __init__(self, model: Model, sleep: Sleep, recorder: Recorder, dt: float, overlaps: Unheld):
         """`dt`: the step [ms]."""
-        self.active = passing(model)
         self._model, self._sleep, self._recorder, self._slack = model, sleep, recorder, SAME * dt
         self._overlaps = overlaps
         self.enters = np.array([sheet.enters for sheet in model.sheets])
         self.enters[np.isnan(self.enters)] = math.inf
-        if self.active:
-            self.stays = np.full((len(model.sheets), 2), np.nan)
-            self.stays[at_start(model), 0] = 0.0
-            recorder.stays = self.stays
+        stays = begun_stays(model)
+        self.active, recorder.stays = stays is not None, stays
+        self.stays = np.zeros((0, 2)) if stays is None else stays
 
     @property
     def there(self) -> NDArray[np.bool_] | None:
@@ -52,25 +50,33 @@ class Passing:
 
     def exact(self, t: float) -> float:
         """The time of a sheet that comes in at t, but for round-off; else t."""
-        near = self.enters[np.abs(self.enters - t) <= self._slack] if self.active else ()
-        return float(near[0]) if len(near) else t
+        near = self.enters[np.abs(self.enters - t) <= self._slack]
+        return float(near[0]) if self.active and near.size else t
 
-    def cut(self, t: float, steps: Floats) -> Floats:
-        """The steps from t on, or those of them up to where the next sheet comes in or leaves."""
+    def cut(self, t: float, steps: Floats) -> tuple[Floats, bool]:
+        """The steps from t on, or those of them up to where the next sheet comes in or leaves; and whether all
+        of these are whole. Half of the way to where one leaves is gone first, until that is in the next step:
+        its velocity may change."""
         if not self.active:
-            return steps
-        due = self._next(t) - t
-        ends = np.cumsum(steps)
+            return steps, True
+        ends, leaves = np.cumsum(steps), self._leaves()
+        if leaves > ends[0]:
+            leaves = float(ends[max(0, int(np.searchsorted(ends, 0.5 * leaves)) - 1)])
+        due = min(self._comes() - t, leaves)
         if not due < ends[-1] - self._slack:
-            return steps
+            return steps, True
         whole = int(np.searchsorted(ends, due + self._slack, side="right"))
         rest = due - (ends[whole - 1] if whole else 0.0)
-        return np.append(steps[:whole], rest) if rest > self._slack else steps[:whole]
+        return (np.append(steps[:whole], rest), False) if rest > self._slack else (steps[:whole], True)
 
-    def _next(self, t: float) -> float:
-        """When the next sheet comes in, or would leave at the velocity that it has [ms]."""
+    def _comes(self) -> float:
+        """When the next sheet comes in [ms]."""
         late = self.enters[self._sleep.gone & np.isnan(self.stays[:, 0])]
-        found = float(late.min(initial=math.inf))
+        return float(late.min(initial=math.inf))
+
+    def _leaves(self) -> float:
+        """After what time the next sheet would leave at the velocity that it has [ms]."""
+        found = math.inf
         for k in np.flatnonzero(~self._sleep.gone).tolist():
             sheet = self._model.sheets[k]
             if not sheet.out:
@@ -78,11 +84,11 @@ class Passing:
             state, own = self._sleep.work.state, self._sleep.system.sheets == k
             if not own.any():
                 continue  # it is asleep
-            rate = state.u[own, :3].mean(axis=0)
+            rate = state.v[own].mean(axis=0)
             for (axis, _, side), gap in zip(sheet.out, -self._far(k), strict=True):
                 speed = side * float(rate[axis])
                 if speed > 0.0:
-                    found = min(found, t + max(float(gap), 0.0) / speed)
+                    found = min(found, max(float(gap), 0.0) / speed)
         return found
 
     def _far(self, k: int) -> Floats:
@@ -103,7 +109,7 @@ class Passing:
             if self.taken(t) is not None:
                 return False
             self._recorder.booked[0] += sleep.change(sleep.gone & ~comes, t)
-            self.stays[comes, 0] = t
+            self.stays[comes, 0] = self.enters[comes]
         return True
 
     def _coming(self, t: float) -> NDArray[np.bool_]:
@@ -129,7 +135,7 @@ class Passing:
                 if deep > 0.0:
                     names = [self._model.sheets[k].name for k in (one, other)]
                     return (
-                        f"sheet {names[0]} comes in at {t:.6g} ms where sheet {names[1]} still is: they overlap "
-                        f"by {deep:.3g} mm; let it come in later, or elsewhere"
+                        f"sheet {names[0]} comes in at {t:.6g} ms where sheet {names[1]} still is: they "
+                        f"overlap by {deep:.3g} mm; let it come in later, or elsewhere"
                     )
         return None

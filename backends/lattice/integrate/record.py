@@ -77,12 +77,6 @@ class Recorder:
         self.booked = np.zeros((2, groups(work), 3))
         # when each sheet came in and left [ms], nan: it did not, (sheets, 2); None: none does
         self.stays: np.ndarray | None = None
-        self._absent: tuple[np.ndarray, np.ndarray] | None = None
-
-    def without(self, bodies: np.ndarray, rates: np.ndarray) -> None:
-        """From now on these bodies are not there; stored are the velocities (bodies, 6) with which they come
-        in, or have left."""
-        self._absent = bodies, rates
 
     def follow(self, work: Workspace, asleep: np.ndarray) -> None:
         """From now on steps work on these arrays, of what is awake of the System; `asleep` (groups, 3):
@@ -108,12 +102,7 @@ class Recorder:
         self._most = np.maximum(self._most, energies[:, KINETIC] + energies[:, ELASTIC])
         self._times.append(t)
         state, motion = self.work.state, self.work.mid.motion
-        u, w = motion.u, motion.w
-        if self._absent is not None:
-            u, w = u.copy(), w.copy()
-            bodies, rates = self._absent
-            u[bodies], w[bodies] = rates[:, :3], rates[:, 3:]
-        self._states.add(Motion(state.x, state.r, u, w))
+        self._states.add(Motion(state.x, state.r, motion.u, motion.w))
         if t == 0.0:
             self.kept.rows[:, NOW] = rows[:, NOW]
             # what presses as a run begins may be gone in the middle of its first step

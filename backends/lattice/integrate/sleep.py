@@ -96,7 +96,7 @@ class Sleep:
         sleeps = sleeps and model.run.sleep and not len(system.bristles)
         sleeps = sleeps and not len(system.yields.hinges)
         if sheets and sleeps and not self._air.any():
-            loose = work.free.loose if self.system is system else momentum.empty(system).loose  # of all sheets
+            loose = work.free.loose if self.system is system else momentum.empty(system).loose
             self._may[: len(loose)] = loose
         self._parts = Parts(model, system)
         self._sheets = np.zeros(sheets, bool)
@@ -228,8 +228,8 @@ class Sleep:
         self._recorder.follow(self.work, self._energies)
 
     def change(self, gone: NDArray[np.bool_], t: float) -> np.ndarray:
-        """From the time t [ms] on the sheets `gone` (sheets,) are not there, and all others are. Returns by how
-        much energy that changes what is there: kinetic, elastic and potential, of one side, (groups, 3)."""
+        """From the time t [ms] on the sheets `gone` (sheets,) are not there, and all others are. Returns how
+        much more energy there is then: kinetic, elastic and potential, of one side, (groups, 3)."""
         left, came = gone & ~self.gone, self.gone & ~gone
         acts = self.work.kept.rows[:, ACTS] != 0.0
         islands = self._islands(acts)
@@ -249,20 +249,13 @@ class Sleep:
         self._energies = asleep
         boxes = np.flatnonzero(np.append(gone, False)[self._parts.sheet_of])
         self._stuck = self._stuck[~(np.isin(self._stuck["a"], boxes) | np.isin(self._stuck["b"], boxes))]
-        self.tell()
-        return self._ledger(t) - before
-
-    def tell(self) -> None:
-        """Tells the recorder what is there."""
-        boxes = np.flatnonzero(np.append(self.gone, False)[self._parts.sheet_of])
-        self._recorder.without(boxes, self._store["u"][boxes])
         self._recorder.follow(self.work, self._energies)
+        return self._ledger(t) - before
 
     def _keep_starts(self) -> None:
         """Stores the velocities with which sheets come in."""
         for name, array in zip(WIDTHS, starts(self._model, self._whole.nodes), strict=True):
             self._store[name][self._whole.nodes] = array
-        self.tell()
 
     def _meet(self, rows: NDArray[np.bool_]) -> None:
         """Notes on which side of parts the boxes of contacts `rows` (contacts,) are as they come in."""
@@ -347,6 +340,4 @@ class Sleep:
         for name, array in self.carried().items():
             if name in found:
                 array[...] = found[name]
-        if self._passes:
-            self.tell()
         self._recorder.follow(self.work, self._energies)

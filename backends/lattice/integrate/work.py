@@ -53,8 +53,8 @@ def start(model: Model, system: System) -> tuple[State, Midpoint, Matrix]:
 
 
 def starts(model: Model, nodes: Ints) -> tuple[Floats, ...]:
-    """What boxes, the bodies `nodes` (n,), come in with: velocities [mm/ms], angular momenta [N mm ms], (n, 3)
-    each, and velocities with angular velocities [rad/ms], (n, 6), as in two steps before."""
+    """What boxes, the bodies `nodes` (n,), come in with: velocities [mm/ms], angular momenta [N mm ms],
+    (n, 3) each, and velocities with angular velocities [rad/ms], (n, 6), as in two steps before."""
     bodies = model.bodies
     turn, spin, v = bodies.rotation[nodes], bodies.spin[nodes], bodies.velocity[nodes]
     own = np.einsum("nji,nj->ni", turn, spin)

@@ -8,6 +8,7 @@ from mdlgen.altair.parts import refuse_unwritten
 from mdlgen.altair.poisson import refuse_poisson
 from mdlgen.altair.rolling import refuse_rolling
 from mdlgen.altair.springs import refuse_compressed
+from mdlgen.altair.streams import refuse_passing
 from mdlgen.backends.motionsolve.writer import gate
 from mdlgen.backends.motionsolve.writer.banner import banner
 from mdlgen.backends.motionsolve.writer.environment import environment
@@ -27,6 +28,7 @@ _BUFFERED = 4096  # pieces of text that are joined at once: a large deck has mil
 def check(model: Model) -> None:
     """Raises RefusedError by name for what the deck cannot represent."""
     refuse_externals(model, "MotionSolve deck")
+    refuse_passing(model, "MotionSolve deck")
     refuse_sticking(model, "MotionSolve deck")
     refuse_measured(model, "MotionSolve deck")
     refuse_yield(model, "MotionSolve deck")

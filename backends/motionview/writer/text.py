@@ -10,6 +10,7 @@ from mdlgen.altair.parts import refuse_unwritten
 from mdlgen.altair.poisson import refuse_poisson
 from mdlgen.altair.rolling import refuse_rolling
 from mdlgen.altair.springs import refuse_compressed
+from mdlgen.altair.streams import refuse_passing
 from mdlgen.backends.motionview.writer import gate
 from mdlgen.backends.motionview.writer.banner import banner
 from mdlgen.backends.motionview.writer.contacts import force_views
@@ -33,6 +34,7 @@ TARGETS = ("2021", "2025")
 def check(model: Model) -> None:
     """Raises RefusedError by name for what the text cannot represent."""
     refuse_externals(model, "MotionView text of the whole scene")
+    refuse_passing(model, "MotionView text")
     check_sheets(model)
     refuse_compressed(model, "MotionView text")
     refuse_rolling(model, "MotionView text")

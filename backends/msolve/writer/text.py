@@ -11,6 +11,7 @@ from mdlgen.altair.poisson import refuse_poisson
 from mdlgen.altair.rolling import refuse_rolling
 from mdlgen.altair.springs import refuse_compressed
 from mdlgen.altair.statics import static_method
+from mdlgen.altair.streams import refuse_passing
 from mdlgen.backends.msolve.environment import environment
 from mdlgen.backends.msolve.writer import contacts, gate, sheets
 from mdlgen.backends.msolve.writer.banner import banner
@@ -34,6 +35,7 @@ def check(model: Model) -> None:
     """Raises RefusedError by name for what the script cannot represent."""
     who = "MotionSolve script"
     refuse_externals(model, who)
+    refuse_passing(model, who)
     refuse_sticking(model, who)
     refuse_measured(model, who)
     refuse_yield(model, who)

@@ -81,7 +81,10 @@ class SheetOverlaps:
         it can. `there` (sheets,): sheets that are, None: all."""
         if not len(self._sheets) and not self._watched:
             return None
-        extents = [self._extent(boxes, position, rotation) for boxes in self._boxes]
+        extents = [
+            self._extent(boxes if there is None or there[k] else boxes[:0], position, rotation)
+            for k, boxes in enumerate(self._boxes)
+        ]
         self._moved(position, rotation)
         for k in self._near(extents, there):
             one, two = (int(s) for s in self._sheets[k])
@@ -101,8 +104,8 @@ class SheetOverlaps:
         return None
 
     def in_each_other(self, one: int, two: int, position: Floats, rotation: Floats) -> float:
-        """How deep two sheets, by their numbers, are in each other [mm]; 0 where that is no more than contacts
-        press them."""
+        """How deep two sheets, by their numbers, are in each other [mm]; 0 where that is no more than
+        contacts press them."""
         extents = [self._extent(self._boxes[k], position, rotation) for k in (one, two)]
         if _gap(*extents) > 0.0:
             return 0.0

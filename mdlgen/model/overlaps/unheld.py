@@ -22,7 +22,8 @@ class Unheld:
         self._sheets, self._folds = SheetOverlaps(model, solved), Folds(model, solved)
 
     def in_each_other(self, one: int, two: int, position: Floats, rotation: Floats) -> float:
-        """How deep two sheets, by their numbers, are in each other [mm]; 0: no more than contacts press them."""
+        """How deep two sheets, by their numbers, are in each other [mm]; 0: no more than contacts press
+        them."""
         return self._sheets.in_each_other(one, two, position, rotation)
 
     def found(
@@ -33,5 +34,5 @@ class Unheld:
         return (
             self._parts.found(position, time)
             or self._sheets.found(position, rotation, time, there)
-            or self._folds.found(position, rotation, time)
+            or self._folds.found(position, rotation, time, there)
         )
