@@ -18,6 +18,7 @@ import numpy as np
 
 from mdlgen.backends.exudyn_local.assemble import Assembly, assemble
 from mdlgen.backends.exudyn_local.films import entries_of
+from mdlgen.backends.exudyn_local.passing import Parts
 from mdlgen.backends.exudyn_local.place import owners
 from mdlgen.backends.exudyn_local.recorder import Recorder
 from mdlgen.backends.exudyn_local.scope import check
@@ -38,6 +39,7 @@ from mdlgen.backends.exudyn_local.step import choose_steps, cost, given_steps
 from mdlgen.backends.exudyn_local.system import MM, MS, Pattern, System, build
 from mdlgen.errors import RefusedError
 from mdlgen.extras import advice
+from mdlgen.model.passing import passing
 from mdlgen.model.tables import Model
 from mdlgen.model.wider import wider
 from mdlgen.results import audit
@@ -238,15 +240,20 @@ def _once(
     started = clock.perf_counter()
     system.stick.lag[0] = h
     recorder = Recorder(model, system, progress, until)
-    assembly = assemble(exu, model, system, pattern, work, recorder)
+    parts = None
+    if passing(model):
+        parts = Parts(exu, model, recorder, lambda of, *steps: _run(exu, of, model, *steps), h)
+    assembly = parts.begin() if parts else assemble(exu, model, system, pattern, work, recorder)
     static = model.run.analysis == "static"
     if not static:
         recorder.plan(h)
-        assembly.mbs.SetPostStepUserFunction(recorder.after_step)
+        if parts is None:
+            assembly.mbs.SetPostStepUserFunction(recorder.after_step)
         recorder.store(assembly.q, assembly.v, 0.0)
     begun = clock.perf_counter()
-    reason = _run(exu, assembly, model, count, h, recorder.touching > 0)
+    reason = parts.run() if parts else _run(exu, assembly, model, count, h, recorder.touching > 0)
     wall = clock.perf_counter() - begun
+    assembly = parts.assembly if parts else assembly
     data = assembly.mbs.systemData
     q, v = np.array(data.GetODE2Coordinates()), np.array(data.GetODE2Coordinates_t())
     if static:
@@ -304,8 +311,9 @@ def _compile(system: System, pattern: Pattern, work: Work) -> None:
     passed(system.bodies, system.pairs, system.shapes, q, v, q, v, 0.0, 0.0)
 
 
-def _settings(exu, count: int, end: float, touching: bool):
-    """Exudyn's settings for `count` steps to `end` [s], or of the load of a static run, where `end` is 0."""
+def _settings(exu, count: int, end: float, touching: bool, begin: float = 0.0):
+    """Exudyn's settings for `count` steps from `begin` to `end` [s], or of the load of a static run, where
+    `end` is 0."""
     s = exu.SimulationSettings()
     s.solution.file.write = False
     s.linearSolver.solverType = exu.LinearSolverType.EigenSparse
@@ -324,7 +332,7 @@ def _settings(exu, count: int, end: float, touching: bool):
     t.newton.maxIterations = 12
     t.verboseMode = 0
     t.numberOfSteps = count
-    t.endTime = end
+    t.startTime, t.endTime = begin, end
     t.generalizedAlpha.spectralRadius = SPECTRAL_RADIUS
     # Accelerations at the start are wanted for accuracy; but in contact the stiff damping makes them so
     # large for a moment that Newton would start far away. Such scenes start at rest in their nips.
@@ -333,15 +341,18 @@ def _settings(exu, count: int, end: float, touching: bool):
     t.adaptiveStepDecrease = 0.5
     t.adaptiveStepIncrease = 2.0
     t.adaptiveStepRecoverySteps = 1
-    t.minimumStepSize = end / count * SMALLEST_STEP
+    t.minimumStepSize = (end - begin) / count * SMALLEST_STEP
     return s
 
 
-def _run(exu, assembly: Assembly, model: Model, count: int, h: float, touching: bool) -> str | None:
-    """Runs; returns the reason of a failure, or None."""
+def _run(
+    exu, assembly: Assembly, model: Model, count: int, h: float, touching: bool, begin: float = 0.0
+) -> str | None:
+    """Runs from `begin` [s]; returns the reason of a failure, or None. `touching`: accelerations at the start
+    are those that are known, or 0."""
     if assembly.system.free == 0:
         return "nothing in this scene can move"
-    settings = _settings(exu, count, count * h, touching)
+    settings = _settings(exu, count, begin + count * h, touching, begin)
     mbs = assembly.mbs
     try:
         run = mbs.SolveStatic if model.run.analysis == "static" else mbs.SolveDynamic

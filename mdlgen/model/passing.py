@@ -36,8 +36,8 @@ def at_start(model: Model) -> list[bool]:
 
 
 def begun_stays(model: Model) -> Floats | None:
-    """`Result.stays` as a run begins: 0 and nan of sheets that are there, nan of others, (sheets, 2); None where
-    no sheet comes in or leaves."""
+    """`Result.stays` as a run begins: 0 and nan of sheets that are there, nan of others, (sheets, 2); None
+    where no sheet comes in or leaves."""
     if not passing(model):
         return None
     stays = np.full((len(model.sheets), 2), np.nan)

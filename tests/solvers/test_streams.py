@@ -60,7 +60,7 @@ def falls(by: float) -> float:
     return math.sqrt(2.0 * by / G)
 
 
-@pytest.mark.parametrize("solver", ["lattice"])
+@pytest.mark.parametrize("solver", ["lattice", "exudyn"])
 def test_blocks_come_in_and_leave_at_their_times(solver: str) -> None:
     result = mdlgen.solve(model(THROWN), solver)
     assert as_asked(result), result.status
@@ -193,3 +193,15 @@ def test_requirements_are_of_sheets_while_they_are_there() -> None:
     assert [o.passed for o in result.verdict] == [True] * 4, [str(o) for o in result.verdict]
     missed = mdlgen.solve(model(THROWN, "require=[left below 100 ms]"), "lattice").verdict[0]
     assert not missed.passed and missed.of == "shot_3"
+
+
+def test_both_solvers_agree() -> None:
+    """Of notes through a nip, by the estimates of both."""
+    sets = ("run.duration=60 ms", "streams.infeed.count=2", "sheets.note.boxes=[3, 2]", "run.step=0.05 ms")
+    one, two = (mdlgen.solve(model(DRAWN, *sets), solver) for solver in ("lattice", "exudyn"))
+    assert as_asked(one) and as_asked(two), (one.status, two.status)
+    assert np.abs(one.stays - two.stays)[~np.isnan(one.stays)].max() < 0.1
+    assert one.energy.entered == pytest.approx(two.energy.entered, rel=1e-9)
+    assert one.energy.left == pytest.approx(two.energy.left, rel=0.02)
+    found = mdlgen.compare(one, two)
+    assert found.relative < 0.01, found

@@ -54,9 +54,9 @@ class Passing:
         return float(near[0]) if self.active and near.size else t
 
     def cut(self, t: float, steps: Floats) -> tuple[Floats, bool]:
-        """The steps from t on, or those of them up to where the next sheet comes in or leaves; and whether all
-        of these are whole. Half of the way to where one leaves is gone first, until that is in the next step:
-        its velocity may change."""
+        """The steps from t on, or those of them up to where the next sheet comes in or leaves; and whether
+        all of these are whole. Half of the way to where one leaves is gone first, until that is in the next
+        step: its velocity may change."""
         if not self.active:
             return steps, True
         ends, leaves = np.cumsum(steps), self._leaves()
@@ -125,17 +125,5 @@ class Passing:
 
     def taken(self, t: float) -> str | None:
         """Why a sheet cannot come in at t: another one is where it comes in; None: none is."""
-        comes, state = self._coming(t), self._sleep.work.state
-        there = ~self._sleep.gone | comes
-        for one in np.flatnonzero(comes).tolist():
-            for other in np.flatnonzero(there).tolist():
-                if other == one or (comes[other] and other < one):
-                    continue
-                deep = self._overlaps.in_each_other(one, other, state.x, state.r)
-                if deep > 0.0:
-                    names = [self._model.sheets[k].name for k in (one, other)]
-                    return (
-                        f"sheet {names[0]} comes in at {t:.6g} ms where sheet {names[1]} still is: they "
-                        f"overlap by {deep:.3g} mm; let it come in later, or elsewhere"
-                    )
-        return None
+        state = self._sleep.work.state
+        return self._overlaps.taken(self._coming(t), ~self._sleep.gone, state.x, state.r, t)

@@ -17,14 +17,32 @@ class Unheld:
 
     def __init__(self, model: Model, solved: NDArray[np.bool_] | None = None) -> None:
         """`solved` (bodies,): those whose places are known, of a scene that is halved by its symmetry."""
-        self.solved = solved
+        self.solved, self._model = solved, model
         self._parts = Overlaps(model)
         self._sheets, self._folds = SheetOverlaps(model, solved), Folds(model, solved)
 
-    def in_each_other(self, one: int, two: int, position: Floats, rotation: Floats) -> float:
-        """How deep two sheets, by their numbers, are in each other [mm]; 0: no more than contacts press
-        them."""
-        return self._sheets.in_each_other(one, two, position, rotation)
+    def taken(
+        self,
+        comes: NDArray[np.bool_],
+        there: NDArray[np.bool_],
+        position: Floats,
+        rotation: Floats,
+        time: float,
+    ) -> str | None:
+        """Why one of the sheets that come in (sheets,) cannot: another one that is there, or comes, is in its
+        place. None: none is."""
+        for one in np.flatnonzero(comes).tolist():
+            for other in np.flatnonzero(there | comes).tolist():
+                if other == one or (comes[other] and other < one):
+                    continue
+                deep = self._sheets.in_each_other(one, other, position, rotation)
+                if deep > 0.0:
+                    names = [self._model.sheets[k].name for k in (one, other)]
+                    return (
+                        f"sheet {names[0]} comes in at {time:.6g} ms where sheet {names[1]} still is: they "
+                        f"overlap by {deep:.3g} mm; let it come in later, or elsewhere"
+                    )
+        return None
 
     def found(
         self, position: Floats, rotation: Floats, time: float, there: NDArray[np.bool_] | None = None
