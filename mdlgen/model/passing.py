@@ -35,6 +35,20 @@ def at_start(model: Model) -> list[bool]:
     return [sheet.enters == 0.0 for sheet in model.sheets]
 
 
+def share(model: Model) -> float:
+    """The part of a run for which sheets are there, in the mean, about: each goes to the nearest plane beyond
+    which it has left at its own speed, or that of the fastest drive."""
+    end, drive = model.run.duration, max((abs(r.speed or 0.0) * r.radius for r in model.rollers), default=0.0)
+    stays = 0.0
+    for sheet in model.sheets:
+        begun = end if math.isnan(sheet.enters) else min(sheet.enters, end)
+        fast = max(float(np.linalg.norm(sheet.velocity)), drive)
+        rotation = model.bodies.rotation.reshape(-1, 9)
+        ways = -far(model, sheet, model.bodies.position, rotation)
+        stays += min(end - begun, float(ways.min()) / fast) if ways.size and fast > 0.0 else end - begun
+    return stays / (end * len(model.sheets)) if passing(model) else 1.0
+
+
 def begun_stays(model: Model) -> Floats | None:
     """`Result.stays` as a run begins: 0 and nan of sheets that are there, nan of others, (sheets, 2); None
     where no sheet comes in or leaves."""

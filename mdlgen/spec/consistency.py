@@ -11,7 +11,7 @@ from pydantic_core import PydanticCustomError
 from mdlgen.spec.action import OnSheet
 from mdlgen.spec.between import known
 from mdlgen.spec.nip import names_of as rollers_of
-from mdlgen.spec.passing import as_written, check_passing, check_stream
+from mdlgen.spec.passing import as_written, check_passing, check_stream, passing_sheets
 from mdlgen.spec.pile import names_of as sheets_of
 from mdlgen.spec.require import requirement
 from mdlgen.spec.strict import fail
@@ -37,7 +37,7 @@ def checks(scene: Scene) -> Iterator[Callable[[], None]]:
         yield partial(_check_pile, scene, name)
     for name in scene.streams:
         yield partial(check_stream, scene, name)
-    for name in scene.sheets:
+    for name in passing_sheets(scene):
         yield partial(check_passing, scene, name)
     for name, mesh in scene.meshes.items():
         if mesh.on is not None:

@@ -22,6 +22,13 @@ def as_written(scene: Scene) -> dict[str, str]:
     return {**found, **{sheet: found.get(sheet, sheet) for sheet in scene.sheets}}
 
 
+def passing_sheets(scene: Scene) -> list[str]:
+    """The sheets that are to be looked at: of a stream the last one, which the others are like."""
+    streams = [names_of(n, {"count": s.count, "times": s.times}) for n, s in scene.streams.items()]
+    others = {name for names in streams for name in names[:-1]}
+    return [name for name in scene.sheets if name not in others]
+
+
 def check_stream(scene: Scene, name: str) -> None:
     """Raises the error where a stream is of no sheet, or its sheets would be clamped."""
     stream, path = scene.streams[name], ("streams", name)
