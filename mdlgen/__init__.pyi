@@ -423,6 +423,7 @@ class Scene(_Scene):
         rollers: Mapping[str, _Roller | Mapping[str, Any]] = ...,
         nips: Mapping[str, _Nip | Mapping[str, Any]] = ...,
         piles: Mapping[str, Mapping[str, Any]] = ...,
+        streams: Mapping[str, Mapping[str, Any]] = ...,
         planes: Mapping[str, _Plane | Mapping[str, Any]] = ...,
         guides: Mapping[str, _Guide | Mapping[str, Any]] = ...,
         meshes: Mapping[str, _Mesh | Mapping[str, Any]] = ...,
@@ -482,6 +483,9 @@ class Sheet(_Sheet):
         spin: Sequence[str] = ...,
         clamp: _Clamp | Mapping[str, Any] | None = ...,
         surface: bool = ...,
+        enters: str = ...,
+        by_rule: bool = ...,
+        out: str | Sequence[str] = ...,
     ) -> None: ...
 
 class Support(_Support):

@@ -64,6 +64,7 @@ RATTLING: dict[str, tuple[str, ...]] = {
     "pile": ("run.duration=5 ms",),
     "retard_pad": (),
     "spring_plate": (),
+    "stream": ("run.duration=70 ms",),
     "tilt_correction": ("run.duration=8 ms",),
     "transport_4x2": (),
     "transport_tilted": ("run.duration=20 ms",),

@@ -7,6 +7,7 @@ _MU = ("contacts.0.friction=0.25",)
 UNSAID: dict[str, tuple[str, ...]] = {
     "landing": ("contacts.landing.air=null",),
     "crease": ("materials.eur10.yield=null",),
+    "stream": ("streams={}", "require=[]"),
     "saddle": ("materials.film.poisson=0",),
     "rubber_nip": ("nips.feed.lower.cover=null", "nips.feed.lower.contact.stiffness=1000 N/mm^1.5"),
     **dict.fromkeys(("verify/aslant", "aslant"), _MU),

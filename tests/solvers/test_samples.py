@@ -47,6 +47,8 @@ PIECES = {
     # while the rod bends the strip; tests/solvers/test_yield.py compares both solvers
     ("crease", "exudyn"): ("sheets.strip.boxes=[10,1]", "run.duration=1 ms", "run.tolerance=0.01"),
     ("pick", "exudyn"): ("run.tolerance=0.01",),
+    # until the second note has come in; tests/solvers/test_streams.py compares both solvers
+    ("stream", "exudyn"): ("run.duration=62 ms", "sheets.note.boxes=[2,2]", "run.step=0.1 ms"),
     # the Model of transport_4x4 (tests/model/test_nips.py), which it runs as a whole below
     ("transport_nips", "exudyn"): ("run.duration=5 ms",),
 }

@@ -1,4 +1,4 @@
-"""Sheets that come in and leave during a run: closed forms, shifts in time, energy, resumed runs, both solvers."""
+"""Sheets that come in and leave in a run: closed forms, shifts in time, energy, resumed runs, both solvers."""
 
 from __future__ import annotations
 
@@ -121,7 +121,8 @@ sheets:
   note: {material: paper, size: [20 mm, 20 mm], thickness: 1 mm, mass: 1 g, boxes: [1, 1],
     center: [0 mm, 0 mm, 0.52 mm], out: [at rest, beyond z = -50 mm]}
 planes: {tray: {center: [0 mm, 0 mm, -1 mm], normal: z, size: [60 mm, 60 mm, 2 mm], mass: 10 g}}
-contacts: [{between: [note, tray], stiffness: 100 N/mm^1.5, restitution: 0.1, friction: 0.5, smoothing: 10 mm/s}]
+contacts:
+  - {between: [note, tray], stiffness: 100 N/mm^1.5, restitution: 0.1, friction: 0.5, smoothing: 10 mm/s}
 run: {duration: 100 ms, step: 0.1 ms}
 """)
     result = mdlgen.solve(model(text), "lattice")
@@ -186,10 +187,8 @@ def test_the_file_has_when_sheets_are_there(tmp_path: Path) -> None:
 
 
 def test_requirements_are_of_sheets_while_they_are_there() -> None:
-    sets = [
-        "require=[speed above 990 mm/s throughout, left below 115 ms, no jam, sheets.shot_2.speed above 1 m/s]"
-    ]
-    result = mdlgen.solve(model(THROWN, *sets), "lattice")
+    asked = "speed above 990 mm/s throughout, left below 115 ms, no jam, sheets.shot_2.speed above 1 m/s"
+    result = mdlgen.solve(model(THROWN, f"require=[{asked}]"), "lattice")
     assert [o.passed for o in result.verdict] == [True] * 4, [str(o) for o in result.verdict]
     missed = mdlgen.solve(model(THROWN, "require=[left below 100 ms]"), "lattice").verdict[0]
     assert not missed.passed and missed.of == "shot_3"

@@ -75,7 +75,8 @@ class Space:
         self.colours: list[tuple[float, ...]] = [ramp(float(v)) for v in np.repeat(share[own], len(FACES))]
         self.plane: list[bool] = [False] * len(self.faces)
         # centre and normal of every box, by which what lies behind a sheet is known from what lies before it
-        self.boxes = place[own], turn[own, :, 2]
+        self.of_boxes, near = len(self.faces), own if own.size else np.arange(count)
+        self.boxes = place[near], turn[near, :, 2]
         held = [moved.reshape(-1, 3)]
         for mesh in (*machine(model), *more):
             points = mesh.points if mesh.body < 0 else mesh.points @ turn[mesh.body].T + place[mesh.body]
@@ -145,8 +146,7 @@ def _paint(panel: Any, scene: Space, view: Floats) -> None:
     near = KDTree(place).query(middle)[1]
     toward = normal[near] * -np.sign(normal[near] @ view[2])[:, None]
     before = np.einsum("ni,ni->n", middle - place[near], toward) > 0.0
-    count = len(FACES) * len(place)
-    group = np.where(np.arange(len(middle)) < count, 1, np.where(before, 2, 0))
+    group = np.where(np.arange(len(middle)) < scene.of_boxes, 1, np.where(before, 2, 0))
     group[np.array(scene.plane)] = -1
     order: Ints = np.lexsort((-(middle @ view[2]), group))
     shown = [int(k) for k in order if facing[k]]
