@@ -479,6 +479,7 @@ class Scene(_Scene):
         shafts: Mapping[str, _Shaft | Mapping[str, Any]] = ...,
         nips: Mapping[str, _Nip | Mapping[str, Any]] = ...,
         piles: Mapping[str, Mapping[str, Any]] = ...,
+        streams: Mapping[str, Mapping[str, Any]] = ...,
         planes: Mapping[str, _Plane | Mapping[str, Any]] = ...,
         guides: Mapping[str, _Guide | Mapping[str, Any]] = ...,
         meshes: Mapping[str, _Mesh | Mapping[str, Any]] = ...,
@@ -550,6 +551,9 @@ class Sheet(_Sheet):
         spin: Sequence[str] = ...,
         clamp: _Clamp | Mapping[str, Any] | None = ...,
         surface: bool = ...,
+        enters: str = ...,
+        by_rule: bool = ...,
+        out: str | Sequence[str] = ...,
     ) -> None: ...
 
 class Steps(_Steps):

@@ -24,6 +24,7 @@ from mdlgen.lints import (
     reactions,
     sheets,
     start,
+    streams,
     ways,
     yielding,
 )
@@ -40,7 +41,8 @@ def lints(model: Model) -> list[Lint]:
 @Once
 def _found(model: Model) -> list[Lint]:
     found = {lint for check in CHECKS for lint in check(model)}
-    return sorted(found, key=lambda lint: (lint.code, lint.where, lint.message))
+    ordered = sorted(found, key=lambda lint: (lint.code, lint.where, lint.message))
+    return list(streams.first_of_each(model, ordered))
 
 
 CHECKS: tuple[Callable[[Model], Iterator[Lint]], ...] = (
@@ -70,6 +72,9 @@ CHECKS: tuple[Callable[[Model], Iterator[Lint]], ...] = (
     ways.against,
     ways.away,
     ways.apart,
+    streams.taken_entry,
+    streams.never_there,
+    streams.never_out,
     planes.sinks,
     planes.crosswise,
     air.no_gas,

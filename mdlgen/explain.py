@@ -303,6 +303,20 @@ SCENE = {
         "A run ends where a free part is further past its stop than a tenth of the way between both stops, "
         "from which its contacts were chosen. Here its spring and its weight alone push it so far."
     ),
+    "W178": (
+        "Two sheets in one place end a run. The gap of two sheets of a stream is its time between them times "
+        "their speed, less their length; it has to be above zero, and more with jitter and skew. What slows "
+        "the first one down in the machine makes it less."
+    ),
+    "W179": (
+        "A sheet that has not come yet is not there: nothing meets it, it costs nothing, and nothing is "
+        "judged of it. Where one never comes, the count or the time between sheets is often too large."
+    ),
+    "W180": (
+        "A sheet has left once all of it is beyond its plane, on the other side of it than where it came in. "
+        "Its boxes are watched in bounds that follow from all that may move them in the run, and the plane "
+        "is outside of these. A sheet that never leaves costs time to the end of the run."
+    ),
 }
 
 TEXT = {

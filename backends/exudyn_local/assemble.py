@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -31,8 +31,25 @@ class Assembly:
     v: np.ndarray
 
 
-def assemble(exu, model: Model, system: System, pattern: Pattern, work: Work, recorder: Recorder) -> Assembly:
-    """Of a Model and its System; the recorder says where the last step ended."""
+class Begun(NamedTuple):
+    """Coordinates with which a part of a run begins, their rates and accelerations, (free,)."""
+
+    q: np.ndarray
+    v: np.ndarray
+    a: np.ndarray
+
+
+def assemble(
+    exu,
+    model: Model,
+    system: System,
+    pattern: Pattern,
+    work: Work,
+    recorder: Recorder,
+    begun: Begun | None = None,
+) -> Assembly:
+    """Of a Model and its System; the recorder says where the last step ended. `begun`: it begins so, None: as
+    the Model does."""
     from exudyn.itemInterface import (
         Mass1D,
         Node1D,
@@ -151,4 +168,13 @@ def assemble(exu, model: Model, system: System, pattern: Pattern, work: Work, re
             )
         )
     mbs.Assemble()
+    if begun is not None and free:
+        q[:], v[:] = begun.q, begun.v
+        first = exu.ConfigurationType.Initial
+        for place, values in (
+            (state.SetODE2Coordinates, begun.q),
+            (state.SetODE2Coordinates_t, begun.v),
+            (state.SetODE2Coordinates_tt, begun.a),
+        ):
+            place(values, first)
     return Assembly(mbs, container, system, pattern, q, v)

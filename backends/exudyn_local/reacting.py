@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from mdlgen.backends.exudyn_local.recorder import Recorder
 from mdlgen.backends.exudyn_local.system import MM, MS, System
@@ -45,9 +46,15 @@ class Reacting:
             self._recorder.renew(t + AFTER * JUMP * MS)
         return bool(orders)
 
+    def follow(self, system: System, there: NDArray[np.bool_]) -> None:
+        """From now on the records are those of this System, which has the sheets that are `there` alone."""
+        self._system, self.machine.there = system, there
+        self._commands.write(system.bodies)
+
     def undo(self) -> None:
         """Leaves the System as it was, for another run."""
-        self._system.bodies[:] = self._bodies
+        if len(self._bodies) == len(self._system.bodies):
+            self._system.bodies[:] = self._bodies
 
     def _poses(self) -> Poses:
         x, r, u, w = self._recorder.motion

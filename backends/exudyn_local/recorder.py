@@ -8,6 +8,7 @@ from collections.abc import Callable
 from typing import TYPE_CHECKING
 
 import numpy as np
+from numpy.typing import NDArray
 
 from mdlgen.backends.exudyn_local.place import lags
 from mdlgen.backends.exudyn_local.shipped import begin, end_hinges, ledger, overstretched, passed, set_limits
@@ -31,6 +32,7 @@ from mdlgen.mechanics.turning import ABOUT_A, ABOUT_B, ALONG, LIMIT, TURNING
 from mdlgen.model import curves
 from mdlgen.model.meshes import carried
 from mdlgen.model.overlaps.unheld import Unheld
+from mdlgen.model.passing import begun_stays
 from mdlgen.model.rotations import euler_parameters
 from mdlgen.model.tables import Model
 from mdlgen.reactions.machine import SOON
@@ -42,6 +44,9 @@ if TYPE_CHECKING:
 
 # Two rollers with a sheet between them clear each other by a few micrometres and may graze.
 GRAZE = 0.05
+
+
+Mask = NDArray[np.bool_]
 
 
 class Recorder:
@@ -87,6 +92,67 @@ class Recorder:
         self._reacting: Reacting | None = None
         self.parted = self._parts = False
         self.finished = False  # a rule ended the run, at a stored time
+        self.stays = begun_stays(model)
+        self._gone = np.zeros(0, bool)  # sheets that are not there, and their boxes; none: all are
+        self._boxes = np.zeros(0, np.int64)
+        self._places = np.append(model.bodies.position * MM, np.zeros((1, 3)), axis=0)  # where those are left
+        self._turns = np.append(model.bodies.rotation.reshape(-1, 9), np.zeros((1, 9)), axis=0)
+        self._entered = self._went = 0.0  # energy that came in, and left [J]
+        self.ahead: Callable[[], bool] | None = None  # whether a part of the run ends before the next step
+        self.stopped = False  # it did
+
+    def taken(self, comes: Mask, there: Mask, places: np.ndarray, turns: np.ndarray, t: float) -> str | None:
+        """See model.overlaps.unheld."""
+        return self._unheld.taken(comes, there, places, turns, t)
+
+    def rebase(self, system: System, gone: Mask, boxes: Mask, at: Coordinates | None) -> None:
+        """From now on the System has no sheets `gone` (sheets,), of the boxes (bodies + 1,). `at`: the state,
+        whose energy is booked; None: the run begins."""
+        fresh = boxes.copy()
+        fresh[self._boxes] = False
+        x, r, _, _ = self._work.motion
+        if at is not None:  # what has left stays where it was seen last
+            self._places[fresh], self._turns[fresh] = x[fresh], r[fresh]
+        came = np.setdiff1d(self._boxes, np.flatnonzero(boxes))
+        self.system, self._tables, self._work = system, system.tables, workspace(system)
+        self._gone, self._boxes = gone, np.flatnonzero(boxes)
+        self._state, self._before = np.zeros((2, 2, max(1, system.free)))
+        self._q, self._v = self._state
+        self._last_q, self._last_v = self._before
+        self._low, self._high = self.model.pairs.low * MM, self.model.pairs.high * MM
+        self._low[self._boxes], self._high[self._boxes] = -np.inf, np.inf
+        if at is None:
+            return
+        self._q[:], self._v[:] = at.q, at.v
+        self._before[:] = self._state
+        before = self._totals[:3].copy()
+        self._pairs[:] = 0.0
+        here = Coordinates(self._q, self._v, at.t)
+        begin(system.bodies, system.pairs, system.shapes, here, self._work.motion)
+        set_limits(system.bodies, system.pairs, self._deepest)
+        ledger(self._tables, here, self._work, self._pairs, self._totals)
+        gained, own = self._totals[:3] - before, self._starts(came)
+        self._entered, self._went = self._entered + own, self._went + own - float(gained.sum())
+        assert self._first is not None, "the start was observed"
+        self._first = [first + more for first, more in zip(self._first, gained.tolist(), strict=True)]
+
+    def _starts(self, boxes: np.ndarray) -> float:
+        """Energy with which boxes come in [J]."""
+        table = self.model.bodies
+        spin = np.einsum("nji,nj->ni", table.rotation[boxes], table.spin[boxes])
+        kinetic = 0.5 * (table.mass[boxes] @ (table.velocity[boxes] ** 2).sum(axis=1))
+        kinetic += 0.5 * (table.inertia[boxes] * spin**2).sum()
+        return MM * float(kinetic - table.mass[boxes] @ (table.position[boxes] @ self.model.gravity))
+
+    def wait(self, t: float, count: int, h: float) -> None:
+        """Goes so many steps of h on, where nothing moves."""
+        end = t + count * h
+        for time in [*self._due[(self._due > t) & (self._due < end)].tolist(), end]:
+            self.steps += 1
+            self._observe(time)
+            done = len(self._stored["t"]) - 1
+            if done < len(self._due) and time >= self._due[done]:
+                self._store(time)
 
     def plan(self, h: float) -> None:
         """Which times are stored: the print times, at the first step that reaches them, and the end."""
@@ -126,7 +192,9 @@ class Recorder:
             happened = self._reacting.look(t)
             self.parted = self._parts and (happened or self._reacting.until(t) < t + step * (1.0 - SOON))
             self.finished = self._reacting.machine.ended and self._last_stored == self.steps
-        return self.reason is None and not self.parted and not self.finished
+        if self.reason is None and self.ahead is not None and self.ahead():
+            self.stopped = True
+        return self.reason is None and not (self.parted or self.finished or self.stopped)
 
     def watch(self, reacting: Reacting, parts: bool) -> None:
         """From now on a machine reacts after each step; `parts`: the solver ends where that asks for it."""
@@ -217,6 +285,9 @@ class Recorder:
             return
         self._last_stored = self.steps
         x, r, u, w = self._work.motion
+        if self._boxes.size:
+            x, r = x.copy(), r.copy()
+            x[self._boxes], r[self._boxes] = self._places[self._boxes], self._turns[self._boxes]
         carried(self.model, x, r, u, w)
         self._stored["t"].append(t)
         self._stored["x"].append(x[:-1].copy())
@@ -229,7 +300,8 @@ class Recorder:
         self._stored["turning"].append(turning)
         self._stored["p"].append(self.system.hinges["plastic"].copy())
         self._stored["b"].append(lags(self.model, self.system, self._q, t))
-        self.reason = self.reason or self._unheld.found(x[:-1] / MM, r[:-1], t / MS)
+        there = None if self.stays is None else ~self._gone
+        self.reason = self.reason or self._unheld.found(x[:-1] / MM, r[:-1], t / MS, there)
 
     def _watch(self, t: float, step: float) -> None:
         """Sets the reason of a failure where a joint is beyond its curve, a body left its bounds or went deep
@@ -303,6 +375,7 @@ class Recorder:
             ),
             touched=int(self._touched.sum()),
             energy=self._balance(),
+            stays=self.stays,
         )
 
     def _off(self, energies: list[float]) -> float:
@@ -332,6 +405,8 @@ class Recorder:
             balance_error=self._off(self._totals.tolist()) * to_nmm / scale if self.steps else 0.0,
             scale=scale,
             plastic=float(self.system.hinges["lost"].sum()) * to_nmm if self.system.hinges.size else None,
+            entered=None if self.stays is None else self._entered * to_nmm,
+            left=None if self.stays is None else self._went * to_nmm,
         )
 
 

@@ -26,3 +26,19 @@ def check(model: Model) -> None:
                 ("rollers", roller.name, "drive", "motor", "control"),
             )
     refuse_moving(model, "Exudyn")
+    refuse_with_passing(model)
+
+
+def refuse_with_passing(model: Model) -> None:
+    """Raises RefusedError for what parts of a run do not carry over: air and hinges."""
+    for name, there in (
+        ("air between sheets", bool((model.contacts.air_viscosity > 0.0).any())),
+        ("a material that yields", bool(len(model.plastic))),
+        ("a sheet that leaves at rest", any(sheet.out_at_rest for sheet in model.sheets)),
+    ):
+        if there and any(sheet.passes for sheet in model.sheets):
+            who = next(sheet.name for sheet in model.sheets if sheet.passes)
+            raise RefusedError(
+                f"Exudyn: {who} comes in or leaves during the run, which does not go with {name}",
+                ("sheets", who),
+            )

@@ -12,8 +12,9 @@ STATIC_TOLERANCE = 1e-8
 SMALLEST_STEP = 1e-3
 
 
-def settings_of(exu, count: int, end: float, touching: bool):
-    """Exudyn's settings for `count` steps to `end` [s], or of the load of a static run, where `end` is 0."""
+def settings_of(exu, count: int, end: float, touching: bool, begin: float = 0.0):
+    """Exudyn's settings for `count` steps from `begin` to `end` [s], or of the load of a static run, where
+    `end` is 0."""
     s = exu.SimulationSettings()
     s.solution.file.write = False
     s.linearSolver.solverType = exu.LinearSolverType.EigenSparse
@@ -32,7 +33,7 @@ def settings_of(exu, count: int, end: float, touching: bool):
     t.newton.maxIterations = 12
     t.verboseMode = 0
     t.numberOfSteps = count
-    t.endTime = end
+    t.startTime, t.endTime = begin, end
     t.generalizedAlpha.spectralRadius = SPECTRAL_RADIUS
     # Accelerations at the start are wanted for accuracy; but in contact the stiff damping makes them so
     # large for a moment that Newton would start far away. Such scenes start at rest in their nips.
@@ -41,5 +42,5 @@ def settings_of(exu, count: int, end: float, touching: bool):
     t.adaptiveStepDecrease = 0.5
     t.adaptiveStepIncrease = 2.0
     t.adaptiveStepRecoverySteps = 1
-    t.minimumStepSize = end / count * SMALLEST_STEP
+    t.minimumStepSize = (end - begin) / count * SMALLEST_STEP
     return s

@@ -18,6 +18,7 @@ import numpy as np
 
 from mdlgen.backends.exudyn_local.assemble import Assembly, assemble
 from mdlgen.backends.exudyn_local.films import entries_of
+from mdlgen.backends.exudyn_local.passing import Parts
 from mdlgen.backends.exudyn_local.place import owners
 from mdlgen.backends.exudyn_local.reacting import Reacting, in_parts
 from mdlgen.backends.exudyn_local.recorder import Recorder
@@ -40,6 +41,7 @@ from mdlgen.backends.exudyn_local.step import choose_steps, cost, given_steps
 from mdlgen.backends.exudyn_local.system import MM, MS, Pattern, System, build
 from mdlgen.errors import RefusedError
 from mdlgen.extras import advice
+from mdlgen.model.passing import passing
 from mdlgen.model.tables import Model
 from mdlgen.model.wider import wider
 from mdlgen.results import audit
@@ -232,20 +234,33 @@ def _once(
     started = clock.perf_counter()
     system.stick.lag[0] = h
     recorder = Recorder(model, system, progress, until)
-    assembly = assemble(exu, model, system, pattern, work, recorder)
+    parts = None
+    if passing(model):
+
+        def go(of: Assembly, many: int, step: float, known: bool, begin: float) -> str | None:
+            return _run(exu, of, model, many, step, recorder, None, known, begin)
+
+        parts = Parts(exu, model, recorder, go, h)
+    assembly = parts.begin() if parts else assemble(exu, model, system, pattern, work, recorder)
     static = model.run.analysis == "static"
     if not static:
         recorder.plan(h)
-        assembly.mbs.SetPostStepUserFunction(recorder.after_step)
+        if parts is None:
+            assembly.mbs.SetPostStepUserFunction(recorder.after_step)
         recorder.store(assembly.q, assembly.v, 0.0)
     reacting = Reacting(model, system, recorder, h) if model.reactions and not static else None
     begun = clock.perf_counter()
     try:
-        reason = _run(exu, assembly, model, count, h, recorder, reacting)
+        if parts is not None:
+            parts.react(reacting)
+            reason = parts.run()
+        else:
+            reason = _run(exu, assembly, model, count, h, recorder, reacting)
     finally:
         if reacting is not None:
             reacting.undo()
     wall = clock.perf_counter() - begun
+    assembly = parts.assembly if parts else assembly
     data = assembly.mbs.systemData
     q, v = np.array(data.GetODE2Coordinates()), np.array(data.GetODE2Coordinates_t())
     if static:
@@ -309,12 +324,21 @@ def _compile(system: System, pattern: Pattern, work: Work) -> None:
 
 
 def _run(
-    exu, assembly: Assembly, model: Model, count: int, h: float, recorder: Recorder, reacting: Reacting | None
+    exu,
+    assembly: Assembly,
+    model: Model,
+    count: int,
+    h: float,
+    recorder: Recorder,
+    reacting: Reacting | None = None,
+    known: bool = False,
+    begin: float = 0.0,
 ) -> str | None:
-    """Runs; returns the reason of a failure, or None."""
+    """Runs from `begin` [s]; returns the reason of a failure, or None. `known`: accelerations at the start are
+    known."""
     if assembly.system.free == 0:
         return "nothing in this scene can move"
-    settings = settings_of(exu, count, count * h, recorder.touching > 0)
+    settings = settings_of(exu, count, begin + count * h, known or recorder.touching > 0, begin)
     mbs = assembly.mbs
     try:
         run = mbs.SolveStatic if model.run.analysis == "static" else mbs.SolveDynamic

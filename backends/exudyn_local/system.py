@@ -40,6 +40,8 @@ MM, G, MS = 1e-3, 1e-3, 1e-3
 PER_MM = 1e3
 SI = Units(mm=MM, per_mm=PER_MM, g=G, ms=MS, hertz=1e3**1.5, mpa=1e6)
 
+# Where sheets stand that are not there [m]: no machine is as large.
+FAR_AWAY = 1e3
 # Where the Euler parameters are among the coordinates of a box, and in `reference`; before them its position.
 EULER = 3
 BODY = np.dtype(
@@ -123,19 +125,22 @@ def check(model: Model) -> None:
             raise RefusedError(f"roller {roller.name}: a press along its own axis is not modelled by exudyn")
 
 
-def build(model: Model) -> tuple[System, Pattern]:
-    """Arrays and jacobian pattern of a Model."""
+def build(model: Model, gone: NDArray[np.bool_] | None = None) -> tuple[System, Pattern]:
+    """Arrays and jacobian pattern of a Model; `gone` (sheets,): sheets that are not there, which stand far
+    away and have no coordinates."""
     check(model)
     moving = model.run.analysis == "transient"
-    bodies, free = _bodies(model, moving)
+    bodies, free = _bodies(model, moving, gone)
     pairs = pack_pairs(model, PAIR, np.arange(len(model.pairs)), SI)
     stick = sticking_of(model, bodies, pairs, free, SI)
     free += FIELD * len(stick.patches)
     film = film_of(model, free, SI)
     free += len(film.cells)
-    bushings, blocks = _bushings(model)
+    bushings, blocks = _bushings(model, gone)
     loads = pack_loads(model, SI)
     corners = corners_of(model, bushings["row"], SI)
+    if gone is not None:
+        corners = corners[~gone[corners["sheet"]]]
     couplings = _couplings(bodies, (bushings, blocks, corners), pairs, loads, stick)
     elements, pattern = _pattern(couplings, blocks, free)
     points = curve_points(model.curves, SI.mpa)
@@ -158,7 +163,7 @@ def build(model: Model) -> tuple[System, Pattern]:
     return system, pattern
 
 
-def _bodies(model: Model, moving: bool) -> tuple[np.ndarray, int]:
+def _bodies(model: Model, moving: bool, gone: NDArray[np.bool_] | None = None) -> tuple[np.ndarray, int]:
     """Records of the bodies, and the number of coordinates; in a static analysis no roller turns."""
     table = model.bodies
     count = len(table.name)
@@ -168,7 +173,10 @@ def _bodies(model: Model, moving: bool) -> tuple[np.ndarray, int]:
     bodies["reference"][:count, EULER:] = euler_parameters(table.rotation)
     bodies["first"] = -1
     free = 0
-    for sheet in model.sheets:
+    for k, sheet in enumerate(model.sheets):
+        if gone is not None and gone[k]:
+            bodies["reference"][sheet.first : sheet.first + sheet.count, :EULER] += FAR_AWAY
+            continue
         for body in range(sheet.first, sheet.first + sheet.count):
             if not table.fixed[body]:
                 bodies["first"][body] = free
@@ -176,10 +184,13 @@ def _bodies(model: Model, moving: bool) -> tuple[np.ndarray, int]:
     return bodies, number(model, bodies, free, turning=moving)
 
 
-def _bushings(model: Model) -> tuple[np.ndarray, list[int]]:
-    """Record array sorted so that the bushings of one pair of bodies stand together, and where they begin."""
+def _bushings(model: Model, gone: NDArray[np.bool_] | None = None) -> tuple[np.ndarray, list[int]]:
+    """Record array sorted so that the bushings of one pair of bodies stand together, and where they begin;
+    without those of sheets that are `gone`."""
     table = model.bushings
     order = np.lexsort((np.arange(len(table)), table.b, table.a))
+    if gone is not None:
+        order = order[~gone[table.sheet[order]]]
     bushings = pack_bushings(model, BUSHING, order, SI)
     changed = (np.diff(bushings["a"]) != 0) | (np.diff(bushings["b"]) != 0)
     starts = [0, *(np.flatnonzero(changed) + 1).tolist()] if len(bushings) else []
@@ -190,7 +201,7 @@ def _hinges(model: Model, bushings: np.ndarray) -> np.ndarray:
     """One for each bushing that yields, whose numbers are noted in these."""
     table = model.plastic
     hinges = np.zeros(len(table), HINGE)
-    place = np.empty(len(bushings), np.int64)
+    place = np.empty(len(model.bushings), np.int64)
     place[bushings["row"]] = np.arange(len(bushings))
     hinges["joint"], hinges["axis"] = place[table.bushing], table.axis
     bushings["hinge"] = -1

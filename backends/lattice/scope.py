@@ -11,6 +11,17 @@ from mdlgen.model.tables import BOX_BOX, Model
 from mdlgen.model.yielding import refuse_static_yield
 
 
+def refuse_passing_yield(model: Model) -> None:
+    """Raises RefusedError where sheets come in or leave, and one yields: hinges are those of all sheets."""
+    late = next((sheet.name for sheet in model.sheets if sheet.passes), None)
+    if late is not None and len(model.plastic):
+        raise RefusedError(
+            f"lattice: {late} comes in or leaves during the run, which does not go with a material that "
+            "yields; leave yield out",
+            ("sheets", late),
+        )
+
+
 def check(model: Model) -> None:
     """Raises RefusedError by name for what it cannot."""
     refuse_externals(model, "lattice")
@@ -18,6 +29,7 @@ def check(model: Model) -> None:
     check_balance(model)
     refuse_static_yield(model, "lattice")
     refuse_moving(model, "lattice")
+    refuse_passing_yield(model)
     if model.run.analysis == "static" and any(roller.speed for roller in model.rollers):
         # a driven roller rubs on what it touches, and the friction of rest is none
         raise RefusedError(

@@ -19,7 +19,7 @@ GROUPS = {
     "Channels and guides": ("channel", "guide_joint", "diverter"),
     "Stacks and feeders": (
         *("stack", "pile", "landing", "spring_plate", "retard_pad", "feeder_window", "feeder", "feeder_one"),
-        *("peel", "pick", "retard", "stall"),
+        *("peel", "pick", "retard", "stall", "stream"),
     ),
     "Material": ("cantilever", "saddle", "snatch", "crease"),
     "Closed forms": tuple(f"verify/{n}" for n in ("drop", "slide", "aslant", "incline", "tension")),

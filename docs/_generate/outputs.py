@@ -64,6 +64,8 @@ SUMMARY: dict[str, tuple[str, str]] = {
         "the part of `energy.dissipated` that sheets took as they yielded; null where none can",
     ),
     "energy.driven": ("N mm", "work of drives and loads"),
+    "energy.entered": ("N mm", "energy with which sheets came in after the start, where some do"),
+    "energy.left": ("N mm", "energy with which sheets left, where some do"),
     "energy.balance_error": (
         "",
         "error of the energy balance over `energy.scale`; positive: a gain",
@@ -111,6 +113,8 @@ SUMMARY: dict[str, tuple[str, str]] = {
         "turn of the sheet about its normal, with the `turn` that it begins with; it does not change where "
         "the sheet only bends or goes round a curve",
     ),
+    "sheets.NAME.entered_ms": ("ms", "when it came in, null if it did not; where sheets come in or leave"),
+    "sheets.NAME.left_ms": ("ms", "when it left, null if it did not"),
     "sheets.NAME.way_mm": (
         "mm",
         "mean way of its boxes in their own planes: along the path also round a bend, where travel is less",
@@ -364,6 +368,11 @@ STATES: dict[str, tuple[str, str, str]] = {
     "statistics/max_force": ("(contact,)", "N", "greatest normal force"),
     "statistics/mean_force": ("(contact,)", "N", "mean normal force over the time in contact"),
     "statistics/last_force_at": ("(contact,)", "ms", "end of the last interval of force; nan if it acts yet"),
+    "stays": (
+        "(sheet, 2)",
+        "ms",
+        "when each sheet came in and left, nan if it did not; where some do during the run",
+    ),
     "joints/...": ("(joint,)", "", "peaks of strain, curvature and twist of each joint, with their times"),
     "model/...": ("", "", "the Model of the run, from which `mdlgen.Result.load` rebuilds all"),
     "took": ("(4,)", "s", "wall, estimate, build and compile time"),

@@ -19,6 +19,7 @@ import numpy as np
 from mdlgen.lints.lint import Lint
 from mdlgen.mechanics.film_grid import film_grids
 from mdlgen.model.parts.kinds import KINDS
+from mdlgen.model.passing import share
 from mdlgen.model.tables import BOX_BOX, Model
 
 START = 4e-3  # [s]
@@ -109,7 +110,8 @@ def _size(model: Model) -> _Size:
     kinds = model.contacts.kind[model.pairs.contact].tolist()
     curved, laid = sum(kinds.count(kind.with_sheet) for kind in KINDS if kind.curved), kinds.count(BOX_BOX)
     boxes, band = _boxes(model)
-    return _Size(
+    part = share(model)
+    size = _Size(
         duration=run.duration,
         outputs=run.duration / run.print_step,
         tolerance=run.tolerance,
@@ -123,6 +125,12 @@ def _size(model: Model) -> _Size:
         contact=len(model.pairs) + beside > 0 and max(counts.values()) > 1,
         pressed=any(plane.press is not None for plane in model.planes),
     )
+    if part == 1.0:
+        return size
+    counted = {
+        name: math.ceil(part * getattr(size, name)) for name in ("boxes", "plain", "curved", "laid", "cells")
+    }
+    return replace(size, band=part * size.band, **counted)
 
 
 def costly(model: Model) -> Iterator[Lint]:

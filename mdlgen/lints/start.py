@@ -24,6 +24,8 @@ def interference(model: Model) -> Iterator[Lint]:
         one, other = model.contacts.part_a[row], model.contacts.part_b[row]
         if number == BOX_BOX:
             two = (sheets[one], sheets[other])
+            if any(sheet.enters != 0.0 for sheet in two):
+                continue  # see W178
             thin, thick = two if two[0].thickness <= two[1].thickness else two[::-1]
             depth = overlap(*two)
             if deep(depth, thin):

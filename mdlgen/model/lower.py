@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable
 from dataclasses import replace
 from typing import Any
@@ -26,6 +27,7 @@ from mdlgen.model.meshes import loaded
 from mdlgen.model.nips import spreads
 from mdlgen.model.parameters.given import parameters, unfollowed
 from mdlgen.model.parts.kinds import KINDS, kind_of
+from mdlgen.model.passing import planes_out
 from mdlgen.model.press.before import Before
 from mdlgen.model.press.faces import Bow, Face, Facets
 from mdlgen.model.reactions import lower_reactions
@@ -217,6 +219,9 @@ def _sheets(scene: Scene) -> tuple[tuple[SheetPart, ...], list[Cells]]:
                 rotation_damping=material.damping.kind,
                 damping_times=material.damping.times,
                 yields=None if material.yield_ is None else material.yield_.curvatures,
+                enters=math.nan if sheet.by_rule else sheet.enters,
+                out=planes_out(sheet),
+                out_at_rest=any(out.axis is None for out in sheet.out),
                 derived=derived(sheet, material),
             )
         )

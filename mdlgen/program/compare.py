@@ -68,6 +68,7 @@ RATTLING: dict[str, tuple[str, ...]] = {
     "retard_pad": (),
     "spring_plate": (),
     "stall": (),
+    "stream": ("run.duration=70 ms",),
     "tilt_correction": ("run.duration=8 ms",),
     "transport_4x2": (),
     "transport_tilted": ("run.duration=20 ms",),

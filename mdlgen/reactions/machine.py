@@ -13,6 +13,7 @@ from dataclasses import dataclass, field
 from typing import Any, NamedTuple
 
 import numpy as np
+from numpy.typing import NDArray
 
 from mdlgen.conditions import CLOCK, OF_SENSOR, condition
 from mdlgen.formulas import Amount
@@ -110,11 +111,24 @@ class Machine:
         self._stage = _Stage([Sight() for _ in self._eyes], [False] * count, [0] * count, table.begins)
         self._before: tuple[float, Poses] | None = None
         self.log: list[dict[str, Any]] = []
+        self._there: NDArray[np.bool_] | None = None
 
     @property
     def ended(self) -> bool:
         """Whether a rule ended the run."""
         return self._stage.ended
+
+    @property
+    def there(self) -> NDArray[np.bool_] | None:
+        """Which sheets are in the machine, (sheets,); None: all."""
+        return self._there
+
+    @there.setter
+    def there(self, sheets: NDArray[np.bool_] | None) -> None:
+        if sheets is not None and not (self._there is not None and np.array_equal(sheets, self._there)):
+            for sight in self._stage.sights:
+                sight.looks = 0.0  # a sheet that comes in, or leaves, does not move there
+        self._there = sheets
 
     # -- when to look
 
@@ -141,8 +155,6 @@ class Machine:
         """When a sensor is looked at next: where it changes within the step, at its end where it is near, or
         as soon as a sheet can be there."""
         off = self._off(eye, poses)
-        if off == FAR and not eye.sheets:
-            return math.inf
         away = abs(off - (eye.hysteresis if sight.covered else 0.0))
         free = self._free(away, max(self._fastest(eye, poses), self._slowest))
         if free > step:
@@ -168,7 +180,11 @@ class Machine:
         return high
 
     def _off(self, eye: Eye, poses: Poses) -> float:
-        return min((float(eye.off(k, poses.of(eye.boxes[k])).min()) for k in eye.sheets), default=FAR)
+        return min((float(eye.off(k, poses.of(eye.boxes[k])).min()) for k in self._seen(eye)), default=FAR)
+
+    def _seen(self, eye: Eye) -> list[int]:
+        """The sheets that a sensor may see now."""
+        return eye.sheets if self._there is None else [k for k in eye.sheets if self._there[k]]
 
     def _changes(self, eye: Eye, sight: Sight, poses: Poses) -> bool:
         off = self._off(eye, poses)
@@ -177,7 +193,7 @@ class Machine:
     def _fastest(self, eye: Eye, poses: Poses) -> float:
         """Speed of what a sensor sees, at most [mm/ms]."""
         most = 0.0
-        for boxes in eye.boxes.values():
+        for boxes in (eye.boxes[k] for k in self._seen(eye)):
             half = self._model.bodies.half[boxes]
             turns = np.linalg.norm(poses.w[boxes], axis=1) * np.linalg.norm(half, axis=1)
             most = max(most, float((np.linalg.norm(poses.u[boxes], axis=1) + turns).max()))
@@ -251,7 +267,10 @@ class Machine:
 
     def _edge(self, k: int, time: float, poses: Poses) -> _Edge:
         eye = self._eyes[k]
-        near = min(eye.sheets, key=lambda sheet: float(eye.off(sheet, poses.of(eye.boxes[sheet])).min()))
+        near = min(
+            self._seen(eye) or eye.sheets,
+            key=lambda sheet: float(eye.off(sheet, poses.of(eye.boxes[sheet])).min()),
+        )
         return _Edge(k, near, time, poses)
 
     def _see(self, edge: _Edge) -> None:

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from mdlgen.model.passing import begun_stays
 from mdlgen.model.tables import Floats, Ints, Model
 from mdlgen.report import boxes
 from mdlgen.report.meshes import machine, moving
@@ -70,7 +71,8 @@ def animation(
         colour(name, unit, values, (0.0, 1.0) if name in names else None)
         for name, (unit, values) in colours.items()
     ]
-    return {**_states(model, moves, time, place, turn, packed_colours), "static": len(at) == 1}
+    shown = _states(model, moves, time, place, turn, packed_colours)
+    return {**shown, **_stays(model, result.stays), "static": len(at) == 1}
 
 
 def at_the_start(model: Model, colours: list[dict[str, Any]]) -> dict[str, Any]:
@@ -78,7 +80,20 @@ def at_the_start(model: Model, colours: list[dict[str, Any]]) -> dict[str, Any]:
     begins in."""
     moves = np.array(moving(model), dtype=np.int64)
     place, turn = (whole[None, moves] for whole in start(model))
-    return {**_states(model, moves, np.zeros(1), place, turn, colours), "static": True}
+    shown = _states(model, moves, np.zeros(1), place, turn, colours)
+    return {**shown, **_stays(model, begun_stays(model)), "static": True}
+
+
+def _stays(model: Model, stays: Floats | None) -> dict[str, Any]:
+    """When the boxes of each sheet are drawn: the first box, how many, and from when to when [ms], null:
+    never, and to the end; nothing where all are there throughout."""
+    if stays is None:
+        return {}
+    rows = [
+        [sheet.first, sheet.count, *(None if np.isnan(when) else float(when) for when in stay)]
+        for sheet, stay in zip(model.sheets, stays, strict=True)
+    ]
+    return {"stays": rows}
 
 
 def _states(

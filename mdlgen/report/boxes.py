@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 import numpy as np
+from numpy.typing import NDArray
 
 from mdlgen.model.parts.kind import Boxes
 from mdlgen.model.parts.kinds import WITH_SHEET
@@ -17,6 +18,7 @@ from mdlgen.model.tables import (
     Ints,
     Model,
 )
+from mdlgen.results import passing
 from mdlgen.results.gates import motion_of, seen
 from mdlgen.units import PER_SECOND
 
@@ -28,6 +30,23 @@ if TYPE_CHECKING:
 def count(model: Model) -> int:
     """Boxes of all sheets; they come before all other bodies."""
     return sum(sheet.count for sheet in model.sheets)
+
+
+def there(result: Result, at: Ints) -> list[NDArray[np.bool_] | None]:
+    """Which boxes are there at each of some stored states, (boxes,); None: all."""
+    found = passing.there(result)
+    if found is None:
+        return [None] * len(at)
+    counts = [sheet.count for sheet in result.model.sheets]
+    return list(np.repeat(found[at], counts, axis=1))
+
+
+def at_start(model: Model) -> NDArray[np.bool_] | None:
+    """Which boxes are there as a run begins, (boxes,); of a scene without any then the first sheet. None:
+    all."""
+    here = np.array([sheet.enters == 0.0 for sheet in model.sheets])
+    here[0] |= not here.any()
+    return None if here.all() else np.repeat(here, [sheet.count for sheet in model.sheets])
 
 
 def speed(result: Result, at: Ints) -> Floats:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
+from mdlgen.model.passing import begun_stays
 from mdlgen.model.rotations import euler_parameters
 from mdlgen.model.tables import Model
 from mdlgen.results.result import ContactStatistics, Result
@@ -26,4 +27,5 @@ def begun_of(model: Model) -> Result:
         contact_torque=np.zeros((1, rows, 2)),
         contact_friction=np.zeros((1, rows, 2)),
         statistics=ContactStatistics(*(np.zeros(rows) for _ in range(5))),
+        stays=begun_stays(model),
     )

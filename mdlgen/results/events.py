@@ -18,6 +18,7 @@ from mdlgen.results.contact_line import contact_line
 from mdlgen.results.creep import creeps
 from mdlgen.results.held import holds
 from mdlgen.results.motors import motor_events
+from mdlgen.results.passing import passages, there
 from mdlgen.results.stacked import stacked
 from mdlgen.results.stays import SHORT, Stay, intervals, stays_at_meshes, stays_of
 from mdlgen.results.stubs import stops
@@ -27,7 +28,7 @@ if TYPE_CHECKING:
     from mdlgen.results.result import Result
 
 KINDS = (
-    *("enter", "leave", "slip", "gap", "wait", "jam", "double_feed", "stub", "creep"),
+    *("entered", "left", "enter", "leave", "slip", "gap", "wait", "jam", "double_feed", "stub", "creep"),
     *("covered", "cleared", "rule"),
     *("stall", "lost_steps", "limiter_slips"),
 )
@@ -40,7 +41,8 @@ def events(result: Result) -> list[dict[str, Any]]:
     """Every event as an object with `time_ms`, `kind`, `sheet`, `roller` (of a stub `part`, of a creep
     `held_by`, of what a sensor sees `sensor`; of a rule neither, but `rule`) and numbers, by time.
 
-    Kinds: `enter` and `leave`; `slip`, one for each stay of a sheet at a roller; `gap`, where a sheet enters
+    Kinds: `entered` and `left`, of a sheet that comes in and leaves during the run; `enter` and `leave`;
+    `slip`, one for each stay of a sheet at a roller; `gap`, where a sheet enters
     a roller that another one was at before; `wait`; `jam`; `double_feed`; `stub`, where the end of a
     plate stops a sheet; `creep`, where regularised friction holds one; `covered` and `cleared`, of a sensor;
     without a sheet `rule`, as one acts, and `stall`, `lost_steps` and `limiter_slips` of a roller. A sheet
@@ -58,13 +60,14 @@ def events(result: Result) -> list[dict[str, Any]]:
     found += _creeps(result)
     found += result.reactions
     found += motor_events(result)
+    found += passages(result)
     order = {"leave": 0, "enter": 1}
     return sorted(found, key=lambda e: (e["time_ms"], order.get(e["kind"], 2), _place(e), e.get("sheet", "")))
 
 
 def _place(event: dict[str, Any]) -> str:
     if "held_by" in event and "roller" not in event:
-        return event["held_by"][0]
+        return next(iter(event["held_by"]), "")
     return event.get("roller") or event.get("part") or event.get("sensor") or ""
 
 
@@ -182,7 +185,7 @@ def _faces(roller: RollerPart, other: RollerPart) -> bool:
 
 def _gaps(result: Result, stays: list[Stay]) -> list[dict[str, Any]]:
     """The distance along the way from the end of the sheet that went before to the start of the next."""
-    found = []
+    found, here_now = [], there(result)
     for roller in result.model.rollers:
         here = sorted((s for s in stays if s.roller is roller), key=lambda s: s.first)
         for before, stay in pairwise(here):
@@ -194,9 +197,10 @@ def _gaps(result: Result, stays: list[Stay]) -> list[dict[str, Any]]:
                 continue
             ahead = _reach(result, before.sheet, stay.first, rate / fast)
             behind = _reach(result, stay.sheet, stay.first, rate / fast)
+            known = here_now is None or here_now[stay.first, before.sheet]  # one that has left is nowhere
             numbers: dict[str, Any] = {
                 "before": result.model.sheets[before.sheet].name,
-                "gap_mm": ahead[0] - behind[1],
+                "gap_mm": ahead[0] - behind[1] if known else None,
                 "gap_ms": None,
             }
             if before.leaves and before.last < stay.first:

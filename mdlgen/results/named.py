@@ -12,6 +12,7 @@ import numpy as np
 
 from mdlgen.model.tables import Floats
 from mdlgen.results.compare import travel
+from mdlgen.results.passing import span
 from mdlgen.results.summary_of_parts import part_rows
 from mdlgen.results.torques import contact_torque, drive_power, drive_torque, grips
 from mdlgen.results.wording import number, numbers
@@ -128,10 +129,11 @@ def sheets(result: Result) -> Mapping[str, SheetResult]:
     found = {}
     for k, sheet in enumerate(result.model.sheets if len(result.time) else ()):
         place, rate, yaw = result.sheet_motion(k)
+        _, last = span(result, k)
         found[sheet.name] = SheetResult(
             name=sheet.name,
             travel=np.asarray(travel(result, k), dtype=float),
-            speed=rate[-1] * PER_SECOND,
+            speed=rate[last] * PER_SECOND,
             yaw=math.degrees(yaw[-1]),
             time=result.time,
             position=place,
@@ -178,10 +180,11 @@ def probes(result: Result) -> Mapping[str, ProbeResult]:
     found = {}
     for k, probe in enumerate(result.model.probes if len(result.time) else ()):
         place, rate = result.anchor_motion(k)
+        _, last = span(result, probe.sheet)
         found[probe.name] = ProbeResult(
             name=probe.name,
             displacement=place[-1] - place[0],
-            speed=rate[-1] * PER_SECOND,
+            speed=rate[last] * PER_SECOND,
             time=result.time,
             position=place,
             velocity=rate * PER_SECOND,

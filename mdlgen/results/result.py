@@ -67,6 +67,9 @@ class Energy:
     of: tuple[str, ...] = ()
     # the part of `dissipated` that yielding took; None: nothing in the scene yields
     plastic: float | None = None
+    # kinetic, elastic and potential energy that came in, and that left, with sheets; None: none does
+    entered: float | None = None
+    left: float | None = None
 
 
 @dataclass(frozen=True)
@@ -111,6 +114,8 @@ class Result:
     # of each roller with an axle, by what angle it is behind its shaft, or what speed control has for that
     # [rad], (t, axles); None: no roller has a motor, a limiter or a bearing
     behind: Floats | None = None
+    # when each sheet came in and left [ms], nan: it did not, (sheets, 2); None: all are there throughout
+    stays: Floats | None = None
     touched: int = 0  # pairs that touched at any step
     energy: Energy = field(default_factory=Energy)
     step: float = 0.0  # [ms]

@@ -15,6 +15,7 @@ from mdlgen.results.compare import travel
 from mdlgen.results.estimates import complete
 from mdlgen.results.losses import driven, kinetic
 from mdlgen.results.mark import chaotic, mark
+from mdlgen.results.passing import at_ends, span
 from mdlgen.results.residual import of_sheet
 from mdlgen.results.result import Result
 from mdlgen.results.sensors import of_sensors
@@ -76,6 +77,7 @@ def summary(result: Result, without: Collection[str] = ()) -> dict[str, Any]:
             "numerical": energy.numerical,
             "plastic": energy.plastic,
             "driven": energy.driven,
+            **({} if energy.entered is None else {"entered": energy.entered, "left": energy.left}),
             "balance_error": energy.balance_error,
             "scale": energy.scale,
             **_accounts(result),
@@ -165,10 +167,11 @@ def _sheet(result: Result, index: int, bearing: bool) -> dict[str, Any]:
     record: dict[str, Any] = dict.fromkeys(numbers)
     if len(result.time):
         _, rate, yaw = result.sheet_motion(index)
+        _, last = span(result, index)
         way, fast, skew = at_the_end(result, index)
         record = {
             "travel_mm": travel(result, index),
-            "speed_mm_per_s": rate[-1] * PER_SECOND,
+            "speed_mm_per_s": rate[last] * PER_SECOND,
             "yaw_deg": math.degrees(yaw[-1]),
             "way_mm": way,
             "mean_speed_mm_per_s": fast * PER_SECOND,
@@ -176,6 +179,7 @@ def _sheet(result: Result, index: int, bearing: bool) -> dict[str, Any]:
         }
     return {
         **record,
+        **at_ends(result, index),
         "boxes": sheet.count,
         "bushings": int(np.sum(result.model.bushings.sheet == index)),
         **(_bearing(result, index) if bearing else {}),
@@ -213,11 +217,12 @@ def _energy__sheet(result: Result, index: int) -> dict[str, float | None]:
         return dict.fromkeys(("kinetic_n_mm", "friction_n_mm"))
     boxes = slice(sheet.first, sheet.first + sheet.count)
     contacts, rubbed = result.model.contacts, 0.0
+    first, last = span(result, index)
     for row, power in found.rows.items():
         if sheet.name in (contacts.part_a[row], contacts.part_b[row]):
             rubbed += float(np.trapezoid(power, result.time))
     return {
-        "kinetic_n_mm": kinetic(result, boxes, -1) - kinetic(result, boxes, 0),
+        "kinetic_n_mm": kinetic(result, boxes, last) - kinetic(result, boxes, first),
         "friction_n_mm": rubbed,
     }
 
@@ -287,4 +292,5 @@ def _probe(result: Result, index: int) -> dict[str, Any]:
     for body, local, share in zip(anchor.body, anchor.local, anchor.share, strict=True):
         start += share * (bodies.position[body] + bodies.rotation[body] @ local)
     place, rate = result.anchor_motion(index)
-    return {"displacement_mm": place[-1] - start, "speed_mm_per_s": rate[-1] * PER_SECOND}
+    _, last = span(result, anchor.sheet)
+    return {"displacement_mm": place[-1] - start, "speed_mm_per_s": rate[last] * PER_SECOND}

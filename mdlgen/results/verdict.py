@@ -14,6 +14,7 @@ from mdlgen.model.parts.kinds import KINDS
 from mdlgen.model.tables import Floats, PlanePart, RollerPart
 from mdlgen.results.drag import drags
 from mdlgen.results.estimates import SAFETY_REST
+from mdlgen.results.passing import came, there
 from mdlgen.results.result import OK
 from mdlgen.results.sensors import MEASURES
 from mdlgen.results.slide import slide
@@ -228,7 +229,9 @@ def _limit(result: Result, record: Mapping[str, Any], wanted: Requirement) -> Ou
     if wanted.sensor is not None:
         return _at_sensor(record, wanted, wanted.sensor)
     each = wanted.measure.partition(".")[0] not in record
-    names = list(record["sheets"]) if each else [None]
+    names = _concerned(result, record, wanted) if each else [None]
+    if not names:
+        return Outcome(wanted.text, False, None, wanted.unit, None)
     rows = []
     for name in names:
         path = f"sheets.{name}.{wanted.measure}" if each else wanted.measure
@@ -263,6 +266,18 @@ def _at_sensor(record: Mapping[str, Any], wanted: Requirement, sensor: str) -> O
     return Outcome(wanted.text, margin >= 0.0, value / per, wanted.unit, margin / per, of)
 
 
+def _concerned(result: Result, record: Mapping[str, Any], wanted: Requirement) -> list[str]:
+    """The sheets that a measure of every sheet is asked of: those that are there at its time, or were at any;
+    of when sheets come in and leave all."""
+    when, names = there(result), list(record["sheets"])
+    if when is None or str(wanted.measure).removesuffix("_ms") in ("entered", "left"):
+        return names
+    if wanted.at is not None:
+        at = int(np.argmin(np.abs(result.time - wanted.at)))
+        return [name for k, name in enumerate(names) if when[at, k]]
+    return [name for k, name in enumerate(names) if came(result, k)]
+
+
 def _worst(values: Floats, wanted: Requirement) -> tuple[float | None, float | None]:
     """The value with the least margin, and that margin."""
     if not values.size or not np.isfinite(values).all():
@@ -284,7 +299,7 @@ def _values(result: Result, record: Mapping[str, Any], path: str, wanted: Requir
                 f"{path} {has}, the limit {f'is in {wanted.unit}' if wanted.unit else 'has no unit'}"
             )
     if wanted.throughout:
-        return _series(result, path), unit
+        return _while_there(result, path, _series(result, path)), unit
     if wanted.at is not None:
         end = result.model.run.duration
         if not 0.0 <= wanted.at <= end * (1.0 + 1e-9):
@@ -293,6 +308,15 @@ def _values(result: Result, record: Mapping[str, Any], path: str, wanted: Requir
     if value is None:
         return np.zeros(0), unit
     return np.array([value * (own.factor if own is not None else 1.0)]), unit
+
+
+def _while_there(result: Result, path: str, values: Floats) -> Floats:
+    """Of a measure of a sheet the values at the times at which that is there."""
+    when, words = there(result), path.split(".")
+    number = {sheet.name: k for k, sheet in enumerate(result.model.sheets)}
+    if when is None or words[0] != "sheets" or words[1] not in number:
+        return values
+    return values[when[:, number[words[1]]]]
 
 
 def _of_summary(record: Mapping[str, Any], path: str) -> tuple[float | None, str]:

@@ -8,6 +8,7 @@ import numpy as np
 
 from mdlgen.model.rotations import column
 from mdlgen.model.tables import Floats
+from mdlgen.results.passing import span
 from mdlgen.results.result import Result
 
 LAST = 0.1  # of the run: what the mean speed and the skew at its end are of
@@ -42,13 +43,14 @@ def way_of(result: Result, index: int) -> Way:
 
 
 def at_the_end(result: Result, index: int) -> tuple[float, float, float]:
-    """Way [mm], and mean speed [mm/ms] and mean skew [rad] over the last tenth of the run; the skew is NaN
-    where the sheet stands then."""
-    way, time = way_of(result, index), result.time
+    """Way [mm], and mean speed [mm/ms] and mean skew [rad] over the last tenth of the run, or of the time
+    that the sheet is there; the skew is NaN where the sheet stands then."""
+    way, (first, last) = way_of(result, index), span(result, index)
+    own = slice(first, len(result.time) if last < 0 else last + 1)
+    time, length, skew = result.time[own], way.length[own], way.skew[own]
     if len(time) < 2:
-        return 0.0, float(way.speed[-1]), float(way.skew[-1])
+        return 0.0, float(way.speed[last]), float(way.skew[last])
     begin = min(int(np.searchsorted(time, time[-1] - LAST * (time[-1] - time[0]))), len(time) - 2)
     lasts = float(time[-1] - time[begin])
-    fast = float(way.length[-1] - way.length[begin]) / lasts
-    skew = way.skew[begin:]
-    return float(way.length[-1]), fast, float(np.trapezoid(skew, time[begin:])) / lasts
+    fast = float(length[-1] - length[begin]) / lasts
+    return float(way.length[-1]), fast, float(np.trapezoid(skew[begin:], time[begin:])) / lasts

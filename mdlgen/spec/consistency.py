@@ -11,6 +11,7 @@ from pydantic_core import PydanticCustomError
 from mdlgen.spec.action import OnSheet
 from mdlgen.spec.between import known
 from mdlgen.spec.nip import names_of as rollers_of
+from mdlgen.spec.passing import as_written, check_passing, check_stream, passing_sheets
 from mdlgen.spec.pile import names_of as sheets_of
 from mdlgen.spec.reacting import checks as reacting
 from mdlgen.spec.require import requirement
@@ -38,6 +39,10 @@ def checks(scene: Scene) -> Iterator[Callable[[], None]]:
         yield partial(_check_nip, scene, name)
     for name in scene.piles:
         yield partial(_check_pile, scene, name)
+    for name in scene.streams:
+        yield partial(check_stream, scene, name)
+    for name in passing_sheets(scene):
+        yield partial(check_passing, scene, name)
     for name, mesh in scene.meshes.items():
         if mesh.on is not None:
             yield partial(known, mesh.on, scene.rollers, "roller", ("meshes", name, "on"))
@@ -62,10 +67,11 @@ def _check_requirement(scene: Scene, k: int) -> None:
 
 def _check_nip(scene: Scene, name: str) -> None:
     nip, path = scene.nips[name], ("nips", name)
+    sheets = as_written(scene)
     if nip.sheet is not None:
-        known(nip.sheet, scene.sheets, "sheet", (*path, "sheet"))
-    elif len(scene.sheets) > 1:
-        raise fail(f"which sheet is between them? give sheet, as sheet: {next(iter(scene.sheets))}", path)
+        known(nip.sheet, sheets, "sheet", (*path, "sheet"))
+    elif len({sheets[sheet] for sheet in scene.sheets}) > 1:
+        raise fail(f"which sheet is between them? give sheet, as sheet: {next(iter(sheets))}", path)
     rollers = rollers_of(name, {"lower": nip.lower, "upper": nip.upper})
     if all(scene.rollers[roller].press is not None for roller in rollers):
         raise fail("both rollers have a press; give one of them a fixed axis", (*path, "upper", "press"))

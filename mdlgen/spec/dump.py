@@ -10,6 +10,7 @@ from pydantic import BaseModel, SerializationInfo
 from mdlgen.spec.beside import with_whole_names
 from mdlgen.spec.nip import names_of
 from mdlgen.spec.pile import names_of as sheets_of
+from mdlgen.spec.stream import names_of as sheets_of_stream
 
 if TYPE_CHECKING:
     from mdlgen.spec.scene import Scene
@@ -21,6 +22,7 @@ def said(scene: Scene, data: dict[str, Any], info: SerializationInfo) -> dict[st
     of_nips = {roller for name, nip in scene.nips.items() for roller in names_of(name, vars(nip))}
     kept = len(scene.contacts) - scene.contacts_made
     of_piles = {sheet for name, pile in scene.piles.items() for sheet in sheets_of(name, vars(pile))}
+    of_piles |= {s for name, own in scene.streams.items() for s in sheets_of_stream(name, vars(own))}
     if of_nips and "rollers" in data:
         data["rollers"] = {name: part for name, part in data["rollers"].items() if name not in of_nips}
     if of_piles and "sheets" in data:
@@ -86,5 +88,8 @@ def _put(data: Any, path: tuple[Any, ...], formula: str, new: bool) -> bool:
             return False
     if isinstance(node, dict) and not new and path[-1] not in node:
         return False
+    if isinstance(node, str):  # a way to leave, which is a text
+        owner[path[-2]] = f"{node.partition('=')[0]}= {formula}"
+        return True
     node[path[-1]] = formula
     return True

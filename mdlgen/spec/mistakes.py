@@ -24,7 +24,7 @@ MOST = 20
 # Tables of parts by name: what --set makes anew here is more often a name that is misspelt.
 _MOST_LOOKS = 1000  # at names beside other mistakes
 _PARTS = ("sheets", *Scene.machine_tables(), "parts")
-_TABLES = ("parameters", "materials", *_PARTS, "nips", "piles", "probes")
+_TABLES = ("parameters", "materials", *_PARTS, "nips", "piles", "streams", "probes")
 _NAMED = ("contacts", *_TABLES)
 # What stands behind a decimal comma: digits, perhaps with a unit.
 _REST = re.compile(r"[0-9]+(?: *[A-Za-z%][\w/*^.%]*)?")

@@ -35,7 +35,8 @@ class Nip(Strict):
     )
     axis: Direction = Field(default=(0.0, 1.0, 0.0), description="axis of both rollers; y where left out")
     sheet: Name | None = Field(
-        default=None, description="the sheet between them; may be left out where there is one only"
+        default=None,
+        description="the sheet, or stream, between them; may be left out where there is one sheet only",
     )
     force: Annotated[float, quantity("N", 0.0, open_low=True)] = Field(
         description="force with which each roller presses the sheet, at rest"
@@ -143,7 +144,10 @@ class _Written:
         sheets = given if isinstance(given, dict) else {}
         only = next(iter(sheets)) if len(sheets) == 1 else None
         self.sheet = only if nip.get("sheet") is None else nip["sheet"]
-        sheet = sheets.get(self.sheet) if isinstance(self.sheet, str) else None
+        streams = data.get("streams")
+        stream = streams.get(self.sheet) if isinstance(streams, dict) else None
+        of = stream.get("of") if isinstance(stream, dict) else self.sheet
+        sheet = sheets.get(of) if isinstance(of, str) else None
         thickness = sheet.get("thickness") if isinstance(sheet, dict) else None
         self.thickness = _good(thickness, "mm")
         self.force = _good(nip.get("force"), "N")

@@ -93,14 +93,14 @@ def _places(sheet: dict[str, Any], pile: dict[str, Any], count: int) -> Iterator
     """Center and turn, or rotation, of each sheet of a pile."""
     center = sheet.get("center", ["0 mm"] * 3)
     thickness, gap = sheet.get("thickness"), pile.get("gap", "0 mm")
-    jitter, turn = _value(pile.get("jitter", "0 mm"), "mm"), _value(pile.get("turn", "0 deg"), "deg")
+    jitter, turn = value_of(pile.get("jitter", "0 mm"), "mm"), value_of(pile.get("turn", "0 deg"), "deg")
     seed = pile.get("seed", 1)
     draw = random.Random(seed if type(seed) is int else 1)
     key = "turn" if sheet.get("rotation") is None else "rotation"
     angles = sheet["rotation"] if key == "rotation" else ["0 deg", "0 deg", sheet.get("turn") or "0 deg"]
     axes = _axes(angles)
     good = axes is not None and isinstance(center, (list, tuple)) and len(center) == 3
-    pitched = _value(thickness, "mm") > 0.0 and _value(gap, "mm") >= 0.0
+    pitched = value_of(thickness, "mm") > 0.0 and value_of(gap, "mm") >= 0.0
     for k in range(count):
         aside = [draw.uniform(-1.0, 1.0) * jitter for _ in range(2)] if k else [0.0, 0.0]
         swung = draw.uniform(-1.0, 1.0) * turn if k else 0.0
@@ -112,10 +112,10 @@ def _places(sheet: dict[str, Any], pile: dict[str, Any], count: int) -> Iterator
             _moved(place, axis[2], up, axis[0] * aside[0] + axis[1] * aside[1])
             for place, axis in zip(center, axes, strict=True)
         ]
-        yield {"center": places, **({} if swung == 0.0 else _turned(key, angles, swung))}
+        yield {"center": places, **({} if swung == 0.0 else turned(key, angles, swung))}
 
 
-def _value(text: Any, unit: str) -> float:
+def value_of(text: Any, unit: str) -> float:
     """In internal units; 0 where its own field reports it."""
     try:
         return float(of_text(text, unit))
@@ -127,13 +127,13 @@ def _axes(angles: Any) -> list[tuple[float, float, float]] | None:
     """Rows of the rotation about the global x, then y, then z axis; None where there is none of that form."""
     if not isinstance(angles, (list, tuple)) or len(angles) != 3:
         return None
-    if all(_value(angle, "deg") == 0.0 for angle in angles[:2]):
-        turn = _value(angles[2], "deg")
+    if all(value_of(angle, "deg") == 0.0 for angle in angles[:2]):
+        turn = value_of(angles[2], "deg")
         c, s = math.cos(turn), math.sin(turn)
         return [(c, -s, 0.0), (s, c, 0.0), (0.0, 0.0, 1.0)]
     from scipy.spatial.transform import Rotation
 
-    turned = Rotation.from_euler("xyz", [_value(angle, "deg") for angle in angles]).as_matrix()
+    turned = Rotation.from_euler("xyz", [value_of(angle, "deg") for angle in angles]).as_matrix()
     return [(float(a), float(b), 0.0 if abs(c) < 1e-15 else float(c)) for a, b, c in turned]
 
 
@@ -147,13 +147,13 @@ def _moved(place: Any, along: float, up: str | None, aside: float) -> Any:
     return found if aside == 0.0 else f"{found} + ({aside!r} mm)"
 
 
-def _turned(key: str, angles: Any, swung: float) -> dict[str, Any]:
+def turned(key: str, angles: Any, swung: float) -> dict[str, Any]:
     """The angles of a sheet that is turned about its normal [rad]."""
     if key == "turn":
         return {"turn": f"({angles[2]}) + ({math.degrees(swung)!r} deg)"}
     from scipy.spatial.transform import Rotation
 
-    given = Rotation.from_euler("xyz", [_value(angle, "deg") for angle in angles])
+    given = Rotation.from_euler("xyz", [value_of(angle, "deg") for angle in angles])
     with warnings.catch_warnings():
         warnings.simplefilter("ignore")  # of a sheet that stands on an edge, whose angles are not unique
         found = (given * Rotation.from_euler("z", swung)).as_euler("xyz", degrees=True)

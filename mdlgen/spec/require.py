@@ -15,7 +15,7 @@ from mdlgen.errors import did_you_mean
 from mdlgen.units import parse_number, parse_quantity, parse_unit, same
 
 EVENTS = (
-    *("enter", "leave", "slip", "gap", "wait", "jam", "double_feed", "stub", "creep"),
+    *("entered", "left", "enter", "leave", "slip", "gap", "wait", "jam", "double_feed", "stub", "creep"),
     *("covered", "cleared", "rule"),
     *("stall", "lost_steps", "limiter_slips"),
 )

@@ -59,6 +59,7 @@ from mdlgen.spec.shaft import Shaft
 from mdlgen.spec.sheet import Sheet
 from mdlgen.spec.shorthand import Defaults, written_out
 from mdlgen.spec.source import Source, text_of, text_of_data
+from mdlgen.spec.stream import Stream
 from mdlgen.spec.strict import Strict, fail, fail_all
 from mdlgen.spec.surface import with_rates
 
@@ -108,6 +109,9 @@ class Scene(Strict):
     )
     piles: dict[Name, Pile] = Field(
         default_factory=dict, description="sheets that lie on each other, with their contacts, by name"
+    )
+    streams: dict[Name, Stream] = Field(
+        default_factory=dict, description="sheets that come in one after another, by name"
     )
     planes: dict[Name, Plane] = Field(default_factory=dict, description="flat plates by name")
     guides: dict[Name, Guide] = Field(
@@ -191,7 +195,7 @@ class Scene(Strict):
 
     @property
     def sheets_of_piles(self) -> dict[str, Any]:
-        """The sheets that piles are of, as they are written: no sheet has their names any more."""
+        """The sheets that piles and streams are of, as they are written: no sheet has their names."""
         return self._sheets_of_piles
 
     @property
@@ -289,7 +293,7 @@ class Scene(Strict):
         )
         sheets = value.get("sheets")
         if isinstance(sheets, dict):
-            of = {pile.of for pile in scene.piles.values()}
+            of = {some.of for some in (*scene.piles.values(), *scene.streams.values())}
             scene._sheets_of_piles = {name: sheet for name, sheet in sheets.items() if name in of}
         if made:
             scene._source = Source(Document(value, {}, {}, scene.name), PYTHON)

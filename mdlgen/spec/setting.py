@@ -14,6 +14,7 @@ from mdlgen.spec.nip import contacts_of
 from mdlgen.spec.nip import names_of as rollers_of
 from mdlgen.spec.pile import names_of as sheets_of
 from mdlgen.spec.rows import KINDS, expanded
+from mdlgen.spec.stream import names_of as sheets_of_stream
 
 _PATTERN = re.compile(r"[*?]")
 WORD = re.compile(r"[A-Za-z0-9_*?]{1,64}")  # of a path
@@ -89,11 +90,15 @@ def met(data: Any, words: list[str], here: Place) -> list[SpecPath]:
 
 
 def made(data: Any, kind: str | int) -> list[str]:
-    """The names of the rollers, or of the contacts, that nips make, or of the sheets of piles."""
+    """The names of the rollers, or of the contacts, that nips make, or of the sheets of piles and
+    streams."""
     if kind == "sheets":
         given = data.get("piles") if isinstance(data, dict) else None
         piles = given if isinstance(given, dict) else {}
-        return [sheet for name, pile in piles.items() for sheet in sheets_of(name, pile)]
+        own = [sheet for name, pile in piles.items() for sheet in sheets_of(name, pile)]
+        given = data.get("streams") if isinstance(data, dict) else None
+        streams = given if isinstance(given, dict) else {}
+        return own + [sheet for name, item in streams.items() for sheet in sheets_of_stream(name, item)]
     given = expanded({"nips": data.get("nips")} if isinstance(data, dict) else {}, {}).get("nips")
     nips = given if isinstance(given, dict) else {}
     if kind == "rollers":

@@ -17,12 +17,14 @@ from mdlgen.spec.fields import (
     Position,
     Size2,
     Spin,
+    TimeOrZero,
     Velocity,
     one_of,
     origin,
 )
 from mdlgen.spec.grading import Graded, Grading
 from mdlgen.spec.limits import DEFAULT
+from mdlgen.spec.out import FORMS, Outs
 from mdlgen.spec.quantities import combined, default, quantity, reading
 from mdlgen.spec.shape import Shape
 from mdlgen.spec.strict import Strict, fail, with_values
@@ -92,6 +94,16 @@ class Sheet(Strict):
     surface: bool = Field(
         default=False, description="deformable surface on the box centres, to look at in MotionView"
     )
+    enters: TimeOrZero = Field(
+        default=default("0 ms"),
+        description="when it comes in; until then it is not there, and nothing meets it",
+    )
+    by_rule: bool = Field(default=False, description="it comes in when a rule says so, in place of enters")
+    out: Outs = Field(
+        default=(),
+        description=f"where it leaves, after which it is not there any more: {FORMS}. Beyond a plane: all of "
+        "it is on the other side of it than where it came in",
+    )
 
     @model_validator(mode="before")
     @classmethod
@@ -130,6 +142,8 @@ class Sheet(Strict):
             raise fail(message, within=("boxes",))
         if self.turn is not None and self.rotation is not None:
             raise fail("turn and rotation are both given; give one of them")
+        if self.by_rule and self.enters > 0.0:
+            raise fail("enters and by_rule are both given; give one of them", within=("enters",))
         if self.surface and min(n_x, n_y) < 2:
             raise fail("surface needs at least 2 x 2 boxes")
         self._check_grading()

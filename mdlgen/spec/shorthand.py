@@ -1,4 +1,5 @@
-"""What a scene says once, or by name, written out: rows of parts, nips, piles, contacts by name, defaults."""
+"""What a scene says once, or by name, written out: rows of parts, nips, piles, streams, contacts by name,
+defaults."""
 
 from __future__ import annotations
 
@@ -7,7 +8,7 @@ from typing import Any
 from pydantic import Field, model_validator
 
 from mdlgen.errors import did_you_mean
-from mdlgen.spec import nip, pile
+from mdlgen.spec import nip, pile, stream
 from mdlgen.spec.contact import Contact
 from mdlgen.spec.machine import Roller
 from mdlgen.spec.nip import Nip
@@ -86,6 +87,7 @@ def written_out(data: Any, origins: dict[Path, Path]) -> Any:
 
     nip.written(data, origins, fill)
     pile.written(data, origins, fill)
+    stream.written(data, origins)
     of_contacts, of_rollers = defaults.get("contacts"), defaults.get("rollers")
     if isinstance(of_contacts, dict) and isinstance(data.get("contacts"), (list, tuple)):
         data["contacts"] = [

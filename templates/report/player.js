@@ -122,6 +122,13 @@ async function player(canvas, changed) {
       colours: animation.colours.map((c) => ({ ...c, values: unpack(c.values, Uint8Array) })).map((c) => ({ ...c, fixed: c.values.length === animation.boxes })),
       group: new THREE.Group(), parts: [], last: new THREE.Vector3(), known: false,
     };
+    // from when to when each box is there
+    run.came = new Float64Array(animation.boxes).fill(-Infinity);
+    run.left = new Float64Array(animation.boxes).fill(Infinity);
+    for (const [first, many, came, gone] of animation.stays ?? []) {
+      run.came.fill(came ?? Infinity, first, first + many);
+      run.left.fill(gone ?? Infinity, first, first + many);
+    }
     run.boxes = blocks(animation.boxes);
     run.group.add(run.boxes);
     for (const mesh of animation.meshes) {
@@ -181,9 +188,15 @@ async function player(canvas, changed) {
     const near = part < 0.5 ? k : Math.min(k + 1, animation.time.length - 1);
     const points = boxes.geometry.attributes.position, tints = boxes.geometry.attributes.color;
     middle.set(0, 0, 0);
+    let there = 0;
     for (let row = 0; row < animation.boxes; row += 1) {
+      if (time < run.came[row] || time >= run.left[row]) { // a box without a size is not seen
+        points.array.fill(0, 72 * row, 72 * row + 72);
+        continue;
+      }
       pose(run, row, k, part);
-      middle.addScaledVector(position, 1 / animation.boxes);
+      middle.add(position);
+      there += 1;
       for (let k = 0; k < 3; k += 1) {
         axis.set(Number(k === 0), Number(k === 1), Number(k === 2)).applyQuaternion(one);
         // both faces are lit alike, so that colours mean the same on both
@@ -206,6 +219,7 @@ async function player(canvas, changed) {
         }
       }
     }
+    if (there) middle.multiplyScalar(1 / there); else middle.copy(run.last);
     points.needsUpdate = true;
     tints.needsUpdate = true;
     for (const { drawn, row } of run.parts) {

@@ -9,6 +9,7 @@ UNSAID: dict[str, tuple[str, ...]] = {
     "diverter": ("guides.gate.pivot=null",),
     "crease": ("materials.eur10.yield=null",),
     "register": ("rules=[]",),
+    "stream": ("streams={}", "require=[]"),
     "saddle": ("materials.film.poisson=0",),
     "rubber_nip": ("nips.feed.lower.cover=null", "nips.feed.lower.contact.stiffness=1000 N/mm^1.5"),
     "retard": ("rollers.retard.limiter=null",),

@@ -219,3 +219,22 @@ def test_a_second_guide_that_is_lower_is_no_edge() -> None:
     assert result.usable, result.status
     assert "stub" not in {event["kind"] for event in result.summary()["events"]}
     assert result.anchor_motion(0)[0][-1, 0] > 2.5
+
+
+def test_notes_of_a_stream_come_and_go() -> None:
+    """One every 60 ms, gone after 107 ms, two at most at a time, each up to 1 degree askew."""
+    result = solved("stream")
+    assert result.ok and all(outcome.passed for outcome in result.verdict)
+    assert result.stays is not None
+    came, left = result.stays.T
+    assert came.tolist() == [0.0, 60.0, 120.0]
+    # 149.5 mm at 1400 mm/s, and what the nips make of that
+    assert np.abs(left - came - 107.0).max() < 1.0
+    there = (result.time[:, None] >= came) & (result.time[:, None] < left)
+    assert there.sum(axis=1).max() == 2
+    skew = np.degrees([sheet.angles[2] for sheet in result.model.sheets])
+    assert np.abs(skew).max() <= 1.0 and len(set(skew)) == 3
+    for k, sheet in enumerate(result.model.sheets):
+        boxes = slice(sheet.first, sheet.first + sheet.count)
+        edge = (result.position[-1, boxes, 0] - result.model.bodies.half[boxes, 0]).min()
+        assert left[k] < 230.0 and edge > 80.0 - 0.3  # half a box's length, seen askew

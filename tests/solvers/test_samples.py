@@ -49,6 +49,8 @@ PIECES = {
     # to where the nips stop; tests/solvers/test_reacting.py looks at both solvers
     ("register", "exudyn"): ("sheets.note.boxes=[5,2]", "run.duration=34 ms", "run.tolerance=0.02"),
     ("pick", "exudyn"): ("run.tolerance=0.01",),
+    # until the second note has come in; tests/solvers/test_streams.py compares both solvers
+    ("stream", "exudyn"): ("run.duration=62 ms", "sheets.note.boxes=[2,2]", "run.step=0.1 ms"),
     # the Model of transport_4x4 (tests/model/test_nips.py), which it runs as a whole below
     ("transport_nips", "exudyn"): ("run.duration=5 ms",),
 }

@@ -1,4 +1,5 @@
-"""The part of a System that is awake: sheets that sleep are parts that do not move there.
+"""The part of a System that is awake: sheets that sleep are parts that do not move there, and sheets
+that have not come yet, or have left, are none.
 
 As with a scene that is halved (symmetry.mirror), the same kernels run on fewer nodes, joints and pairs.
 Bodies keep their numbers, contacts their rows.
@@ -22,7 +23,7 @@ class Parts:
         number = {sheet.name: k for k, sheet in enumerate(model.sheets)}
         table = model.contacts
         ends = (table.part_a, table.part_b)
-        self.sheets = np.array([[number.get(name, -1) for name in end] for end in ends]).reshape(2, -1)
+        self.sheets = np.array([[number.get(name, -1) for name in end] for end in ends], int).reshape(2, -1)
         self.moves = np.zeros(len(table), bool)
         pairs = system.pairs[: system.search.first]
         self.moves[pairs["row"]] = _moves(model, system)[pairs["b"]]
@@ -31,12 +32,30 @@ class Parts:
         for k, sheet in enumerate(model.sheets):
             self.sheet_of[sheet.first : sheet.first + sheet.count] = k
 
+    def of(self, some: NDArray[np.bool_]) -> NDArray[np.bool_]:
+        """Contacts of some sheets with anything, (contacts,)."""
+        own = some[np.maximum(self.sheets, 0)] & (self.sheets >= 0)
+        return own[0] | own[1]
+
     def lasting(self, asleep: NDArray[np.bool_]) -> NDArray[np.bool_]:
         """Contacts of sheets that sleep with each other and with what does not move, (contacts,)."""
         known = self.sheets >= 0
         sleeps = known & asleep[np.where(known, self.sheets, 0)]
         other = ~known[1] & ~self.moves
         return sleeps[0] & (sleeps[1] | other)
+
+
+def _held(held: np.ndarray, pairs: np.ndarray, chosen: Ints) -> np.ndarray:
+    """Those of the pairs in patches that are `chosen`, which are noted in these `pairs`."""
+    if not len(held):
+        return held
+    place = np.full(int(max(held["pair"].max(), chosen.max(initial=0))) + 1, -1)
+    place[chosen] = np.arange(len(chosen))
+    found = held[place[held["pair"]] >= 0].copy()
+    found["pair"] = place[found["pair"]]
+    pairs["held"] = 0
+    pairs["held"][found["pair"]] = 1 + np.arange(len(found))
+    return found
 
 
 def _moves(model: Model, system: System) -> NDArray[np.bool_]:
@@ -48,10 +67,16 @@ def _moves(model: Model, system: System) -> NDArray[np.bool_]:
     return moves
 
 
-def awake(system: System, parts: Parts, asleep: NDArray[np.bool_]) -> tuple[System, Ints]:
-    """The System with the sheets that are `asleep` (sheets,) as parts that do not move, in arrays of its own,
-    and which of the pairs before those that are searched it has."""
+def awake(
+    system: System, parts: Parts, asleep: NDArray[np.bool_], gone: NDArray[np.bool_] | None = None
+) -> tuple[System, Ints]:
+    """The System with the sheets that are `asleep` (sheets,) as parts that do not move, and without those
+    that are `gone` (sheets,), in arrays of its own, and which of the pairs before those that are searched it
+    has."""
     lasting = parts.lasting(asleep)
+    if gone is not None:
+        asleep = asleep | gone
+        lasting |= parts.of(gone)
     bodies = system.bodies.copy()
     left = ~asleep[system.sheets]
     nodes = system.nodes[left]
@@ -65,6 +90,7 @@ def awake(system: System, parts: Parts, asleep: NDArray[np.bool_]) -> tuple[Syst
     chosen = np.flatnonzero(~lasting[system.pairs["row"][: search.first]])
     regions = ~lasting[search.regions["row"]]
     pairs, listed = with_room(system.pairs[chosen], float(search.room[regions].sum()))
+    held = _held(system.held, pairs, chosen)
     met = np.zeros(len(bodies), bool)
     for region in search.regions[regions]:
         for end in "ab":
@@ -75,6 +101,7 @@ def awake(system: System, parts: Parts, asleep: NDArray[np.bool_]) -> tuple[Syst
             bodies=bodies,
             joints=joints,
             pairs=pairs,
+            held=held,
             loads=system.loads[~sleeps[system.loads["body"]]],
             nodes=nodes,
             sheets=system.sheets[left],

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import numpy as np
+from numpy.typing import NDArray
 
 from mdlgen.backends.lattice.arrays import System, partner
 from mdlgen.backends.lattice.integrate.work import flexible
@@ -22,13 +23,20 @@ from mdlgen.results import audit
 from mdlgen.results.result import Result
 
 # How a halved run ends, beside those of kernels.integrate.integrate.
-PASSED, OVERLAPPED, LIMITED, CRAWLED, RUNAWAY = -1, -2, -3, -4, -5
+PASSED, OVERLAPPED, LIMITED, CRAWLED, RUNAWAY, TAKEN = -1, -2, -3, -4, -5, -6
 
 
 def reason_of(
-    model: Model, system: System, status: int, t: float, dt: float, state: State, counters: Floats
+    model: Model,
+    system: System,
+    status: int,
+    t: float,
+    dt: float,
+    state: State,
+    counters: Floats,
+    there: NDArray[np.bool_] | None = None,
 ) -> str:
-    """Why a run ended before its end."""
+    """Why a run ended before its end; `there` (sheets,): sheets that were, None: all."""
     from mdlgen.backends.lattice.kernels.integrate import integrate
 
     names = model.bodies.name
@@ -62,7 +70,7 @@ def reason_of(
         deep = model.too_deep(box, plate, before_an_end(system.pairs[pair]))
         return f"{deep} at {t:.6g} ms; {model.held_by(box, way)}"
     if status == OVERLAPPED:
-        return unheld(model, system).found(state.x, state.r, t) or "two parts overlap"
+        return unheld(model, system).found(state.x, state.r, t, there) or "two parts overlap"
     if status == PASSED:
         return (
             f"box {names[int(counters[WORST])]} has passed the plane of the scene's symmetry at "

@@ -11,6 +11,7 @@ from threading import Event
 from typing import NamedTuple
 
 import numpy as np
+from numpy.typing import NDArray
 
 from mdlgen.backends.lattice.arrays import System
 from mdlgen.backends.lattice.integrate.beside import Stopped
@@ -20,6 +21,7 @@ from mdlgen.backends.lattice.integrate.ends import (
     OVERLAPPED,
     PASSED,
     RUNAWAY,
+    TAKEN,
     reason_of,
     unbalanced,
     unheld,
@@ -27,12 +29,13 @@ from mdlgen.backends.lattice.integrate.ends import (
 from mdlgen.backends.lattice.integrate.limit import Calls, Cut, Deadline
 from mdlgen.backends.lattice.integrate.looks import Looks
 from mdlgen.backends.lattice.integrate.pass_state import PassState, Stage
+from mdlgen.backends.lattice.integrate.passing import Passing
 from mdlgen.backends.lattice.integrate.reacting import Reacting
 from mdlgen.backends.lattice.integrate.record import Recorder, Snapshot
 from mdlgen.backends.lattice.integrate.sleep import Sleep
 from mdlgen.backends.lattice.integrate.slow import Slow
 from mdlgen.backends.lattice.integrate.widen import begins_again
-from mdlgen.backends.lattice.integrate.work import arrays, control, flexible
+from mdlgen.backends.lattice.integrate.work import arrays, beginning, control, flexible
 from mdlgen.backends.lattice.kernels import entries
 from mdlgen.backends.lattice.kernels.integrate import integrate
 from mdlgen.backends.lattice.kernels.state import (
@@ -173,13 +176,15 @@ class _Pass:
         self._begun = clock.perf_counter()
         self._most = times * divided.outputs * divided.each  # steps
         self._looks = Looks(model.run.duration, divided.outputs, divided.each)
-        work = arrays(model, system)
+        there = beginning(model, system)
+        work = arrays(model, system, there[0])
         steering = control(work)
         self._counters, self._energies, self._pace = steering.counters, steering.energies, steering.pace
         self._recorder = Recorder(model, system, work, divided.outputs)
         self._overlaps = unheld(model, system)
+        self._sleep = Sleep(model, system, work, steering, self._recorder, watch.sleeps, there)
+        self.passing = Passing(model, self._sleep, self._recorder, divided.step, self._overlaps)
         self._recorder.store(0.0)
-        self._sleep = Sleep(model, system, work, steering, self._recorder, watch.sleeps)
         # the guess of a step is the better the finer it is: what is left of it must fall as fast
         part = ROUND_OFF if flexible(model) else ROUND_OFF_RIGID
         self._tolerance = part * min(1.0, (divided.step / FIRST_STEP) ** 2) * accuracy(model)
@@ -187,7 +192,9 @@ class _Pass:
         self._todo = range(divided.outputs)  # numbers of the outputs that are not reached yet
         self._calls = Calls(MOST_AT_ONCE)
         self._slow = Slow(model, steering, None if watch.hidden else watch.progress)
-        self._reacting = Reacting(model, self._sleep, speed(model)) if model.reactions else None
+        self._reacting = None
+        if model.reactions:
+            self._reacting = Reacting(model, self._sleep, self.passing, speed(model))
 
     def steer(self, miss: float, made: float, anew: bool) -> None:
         self._pace[[MISS_OF, ANEW, MADE_OF]] = miss, float(anew), made
@@ -249,7 +256,7 @@ class _Pass:
             if looks.due(goal):
                 self._t = looks.time(goal)
                 self._sleep.look(self._t, self._tolerance)
-                status = _seen(self._sleep, self._system, self._overlaps, self._t)
+                status = _seen(self._sleep, self._system, self._overlaps, self._t, self.passing.there)
                 if status != integrate.DONE:
                     if not stored:
                         self._recorder.store(self._t)
@@ -263,13 +270,17 @@ class _Pass:
         while left.size:
             if stop is not None and stop.is_set():
                 raise Stopped
+            if not self.passing.turn(t):
+                return TAKEN, t
             began, many, since = t, self._calls.many, clock.perf_counter()
-            now = left[:many]
+            some = left[:many]
             if self._reacting is not None:
-                now = self._reacting.steps(t, now, dt)
-            status, t = integrate.run(sleep.work, t, now, self._tolerance, sleep.steering)
+                some = self._reacting.steps(t, some, dt)
+            taken, whole = self.passing.cut(t, some)
+            whole = whole and some[0] == left[0]
+            status, t = integrate.run(sleep.work, t, taken, self._tolerance, sleep.steering)
             took = clock.perf_counter() - since
-            self._calls.took(now.size, took)
+            self._calls.took(len(taken), took)
             self._slow.tell(t, left[0], took)
             if fresh and t > began:
                 self._recorder.between()
@@ -278,10 +289,12 @@ class _Pass:
                 return LIMITED, t
             if status == integrate.DONE and self._counters[STEPS] > self._most:
                 return CRAWLED, t
+            if status == integrate.DONE and not whole:
+                t = self.passing.exact(t)
             if status == integrate.DONE and self._reacting is not None:
                 status = self._reacting.look(t, dt)
             if status == integrate.DONE:
-                left = left[now.size :] if now[0] == left[0] else self._looks.left(goal, t, dt)
+                left = left[len(taken) :] if whole else self._looks.left(goal, t, dt)
             elif status == integrate.WOKEN:
                 sleep.wake(int(self._counters[WORST]), t)
                 left = self._looks.left(goal, t, dt)
@@ -324,10 +337,13 @@ class _Pass:
         dt, sleep, reason = self._divided.step, self._sleep, None
         if status != integrate.DONE:
             state = sleep.work.state
+            at = sleep.system, status, self._t, dt, state, self._counters, self.passing.there
             if status == RUNAWAY and self._reacting is not None:
                 reason = self._reacting.runaway
+            elif status == TAKEN:
+                reason = self.passing.taken(self._t)
             else:
-                reason = reason_of(self._model, sleep.system, status, self._t, dt, state, self._counters)
+                reason = reason_of(self._model, *at)
         result = self._recorder.result("lattice", reason, self._energies)
         result.step, result.steps = dt, int(self._counters[STEPS])
         result.rounds, result.wall_s = int(self._counters[ITERATIONS]), wall
@@ -349,14 +365,15 @@ class _Pass:
         return result.failed(wrong if result.ok else f"{result.status}; and {wrong}")
 
 
-def _seen(sleep: Sleep, system: System, overlaps: Unheld, t: float) -> int:
-    """integrate.DONE, or why a pass cannot go on from its state at the time t."""
+def _seen(sleep: Sleep, system: System, overlaps: Unheld, t: float, there: NDArray[np.bool_] | None) -> int:
+    """integrate.DONE, or why a pass cannot go on from its state at the time t; `there` (sheets,): sheets that
+    are, None: all."""
     state, mirror = sleep.work.state, sleep.system.mirror
     passed = mirror.passed(state.x, system.nodes) if mirror is not None else -1
     if passed >= 0:
         sleep.steering.counters[WORST] = passed
         return PASSED
-    return integrate.DONE if overlaps.found(state.x, state.r, t) is None else OVERLAPPED
+    return integrate.DONE if overlaps.found(state.x, state.r, t, there) is None else OVERLAPPED
 
 
 def _part(recorder: Recorder, snapshot: Snapshot, dt: float, steps: int) -> Result:

@@ -8,6 +8,7 @@ import json
 import numpy as np
 
 from mdlgen.backends.lattice.integrate.ends import RUNAWAY
+from mdlgen.backends.lattice.integrate.passing import Passing
 from mdlgen.backends.lattice.integrate.sleep import Sleep
 from mdlgen.backends.lattice.kernels.integrate.integrate import DONE
 from mdlgen.backends.lattice.kernels.state import DRIVEN, THROUGH_DRIVES
@@ -20,10 +21,10 @@ from mdlgen.reactions.sensing import Poses
 class Reacting:
     """The machine of a Model along one pass."""
 
-    def __init__(self, model: Model, sleep: Sleep, slowest: float):
+    def __init__(self, model: Model, sleep: Sleep, passing: Passing, slowest: float):
         """`slowest`: see Machine."""
         self.machine = Machine(model, slowest)
-        self._sleep, self._commands = sleep, Commands(model, Units())
+        self._sleep, self._passing, self._commands = sleep, passing, Commands(model, Units())
         self._boxes = np.zeros(len(sleep.work.tables.bodies), bool)
         for sheet in model.sheets:
             self._boxes[sheet.first : sheet.first + sheet.count] = True
@@ -34,12 +35,14 @@ class Reacting:
         """Of the steps that are `left` [ms] from the time t on those to take before the machine looks again:
         whole ones, or a part of the first; `step`: a whole one."""
         self._write()
+        self.machine.there = self._passing.there
         until = self.machine.ahead(t, step, self._poses()) - t
         whole = int(np.searchsorted(np.cumsum(left), until + SOON * step, side="right"))
         return left[:whole] if whole else np.array([until])
 
     def look(self, t: float, step: float) -> int:
         """Sees what happens at the time t, and carries out what follows: integrate.DONE, or RUNAWAY."""
+        self.machine.there = self._passing.there
         try:
             orders = self.machine.look(t, step, self._poses())
         except RunawayError as error:

@@ -57,6 +57,8 @@ class Snapshot(NamedTuple):
     work: np.ndarray
     # of groups of parts: first and last, (groups, 3), and the most of kinetic and elastic together, (groups,)
     energies: tuple[np.ndarray, np.ndarray, np.ndarray]
+    booked: np.ndarray  # of what came in, and of what left, (2, groups, 3)
+    stays: np.ndarray | None  # see Recorder
 
 
 class Recorder:
@@ -73,6 +75,10 @@ class Recorder:
         self._times: list[float] = []
         self._energies = np.zeros((2, groups(work), 3))  # first and last
         self._most = np.zeros(groups(work))
+        # energies that came in and that left with sheets, (2, groups, 3)
+        self.booked = np.zeros((2, groups(work), 3))
+        # when each sheet came in and left [ms], nan: it did not, (sheets, 2); None: none does
+        self.stays: np.ndarray | None = None
 
     def follow(self, work: Workspace, asleep: np.ndarray) -> None:
         """From now on steps work on these arrays, of what is awake of the System; `asleep` (groups, 3):
@@ -129,6 +135,7 @@ class Recorder:
             "f": np.array(self._forces).reshape(len(self._times), len(self.model.contacts), len(NOW)),
             "times": np.array(self._times),
             "energies": np.concatenate([self._energies.ravel(), self._most]),
+            **({} if self.stays is None else {"booked": self.booked, "stays": self.stays}),
             "rows": self.kept.rows,
             "marks": self.kept.marks,
         }
@@ -143,6 +150,8 @@ class Recorder:
         energies, self._most = np.split(arrays["energies"], (self._energies.size,))
         self._energies[:] = energies.reshape(self._energies.shape)
         self.kept.rows[:], self.kept.marks[:] = arrays["rows"], arrays["marks"]
+        if self.stays is not None:
+            self.booked[:], self.stays[:] = arrays["booked"], arrays["stays"]
 
     def _rotations(self, times: int) -> np.ndarray:
         """Plastic rotations at the first so many times, and the energy that they took, (times, rows + 1)."""
@@ -158,7 +167,15 @@ class Recorder:
         first, last = self._energies.copy()
         energies = (first, last, self._most.copy())
         return Snapshot(
-            self.model, self.system, len(self._times), rows.copy(), marks.copy(), work.copy(), energies
+            self.model,
+            self.system,
+            len(self._times),
+            rows.copy(),
+            marks.copy(),
+            work.copy(),
+            energies,
+            self.booked.copy(),
+            None if self.stays is None else self.stays.copy(),
         )
 
     def result(self, solver: str, reason: str | None, work: np.ndarray) -> Result:
@@ -179,7 +196,7 @@ class Recorder:
             summed = (MAX_FORCE, FORCE_TIME, FORCE_NOW)  # depths and times hold for both sides
             columns = enumerate(rows.T)
             rows = np.array([(mirror.sums if k in summed else mirror.largest)(c) for k, c in columns]).T
-            snapshot = snapshot._replace(work=2.0 * snapshot.work)
+            snapshot = snapshot._replace(work=2.0 * snapshot.work, booked=2.0 * snapshot.booked)
         inside = np.where(rows[:, TIME] > 0, rows[:, TIME], 1.0)
         forces = np.array(self._forces[: snapshot.times])
         forces = forces if mirror is None else mirror.acts(forces)
@@ -213,6 +230,7 @@ class Recorder:
             energy=energy,
             versions=_versions(),
             halved=mirror is not None,
+            stays=snapshot.stays,
         )
 
 
@@ -222,19 +240,24 @@ def _balance(snapshot: Snapshot, work: Workspace) -> Energy:
     lost, driven, through, numerical = snapshot.work.sum(axis=0).tolist()
     kinetic, elastic, _ = last.sum(axis=0).tolist()
     worst, scale, of = 0.0, 0.0, ()
+    came, left = snapshot.booked
     for group in range(len(last)):
         own, moved = snapshot.work[group], float(last[group, POTENTIAL] - first[group, POTENTIAL])
+        passed = came[group] - left[group]
+        moved -= float(passed[POTENTIAL])
         names = _names(model, work, group)
         size = audit.scale(
             model, float(own[DISSIPATED]), float(own[THROUGH_DRIVES]), float(most[group]), moved, names
         )
-        change = float(last[group].sum() - first[group].sum())
+        change = float(last[group].sum() - first[group].sum()) - float(passed.sum())
         off = (change + float(own[DISSIPATED]) - float(own[DRIVEN])) / size
         if not of or abs(off) > abs(worst):
             worst, scale, of = off, size, names
-    return Energy(
-        kinetic, elastic, lost - numerical, driven, worst, scale, numerical, of if len(last) > 1 else ()
-    )
+    of = of if len(last) > 1 else ()
+    energy = Energy(kinetic, elastic, lost - numerical, driven, worst, scale, numerical, of)
+    if snapshot.stays is not None:
+        energy.entered, energy.left = float(came.sum()), float(left.sum())
+    return energy
 
 
 def _names(model: Model, work: Workspace, group: int) -> tuple[str, ...]:

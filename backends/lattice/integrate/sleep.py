@@ -15,6 +15,9 @@ How long a while is: a sheet that is slower than V for a time W about a turn in 
 part STILL of the speed that iterations may leave, a tenth of the run's tolerance times the way of what is
 fastest. A sheet that woke waits twice as long.
 
+Sheets that have not come yet, or have left, are `gone`: nothing meets them, and their energies are booked as
+they come and leave (see passing).
+
 Sheets with air on them do not sleep, since a film closes slowly. Nor does an island of which a sheet hangs on
 something, or touches a part that moves, nor any sheet of a scene where sheets stick on other parts.
 """
@@ -32,12 +35,16 @@ from mdlgen.backends.lattice.integrate.awake import Parts, awake
 from mdlgen.backends.lattice.integrate.islands import groups
 from mdlgen.backends.lattice.integrate.record import Recorder
 from mdlgen.backends.lattice.integrate.widen import besides, carried_over, marks_of, places, system_of
-from mdlgen.backends.lattice.integrate.work import workspace
+from mdlgen.backends.lattice.integrate.work import starts, workspace
 from mdlgen.backends.lattice.kernels.state import (
     ACTS,
+    DEPTH_NOW,
+    ENDED,
     FASTEST,
+    FORCE_NOW,
     STEPS,
     TIME,
+    TURNING_NOW,
     Control,
     Workspace,
 )
@@ -45,7 +52,9 @@ from mdlgen.backends.lattice.kernels.tuning import STILL, STILL_FOR, STILL_STEPS
 from mdlgen.backends.lattice.search import many_searched
 from mdlgen.mechanics.frame import Motion
 from mdlgen.mechanics.stick import STRETCH
-from mdlgen.model.tables import Model
+from mdlgen.mechanics.turning import TURNING
+from mdlgen.model.passing import at_start, passing
+from mdlgen.model.tables import Ints, Model
 from mdlgen.model.wider import wider, with_margin
 from mdlgen.runs.checkpoint import Checkpointer, State
 
@@ -54,7 +63,9 @@ from mdlgen.runs.checkpoint import Checkpointer, State
 WIDTHS = {"v": 3, "l": 3, "u": 6, "last": 6, "earlier": 6}
 # What a checkpoint has: the margin of the pairs, which sheets sleep, and of Asleep.
 MARGIN = "margin"
-SHEETS = "sleep.sheets"
+SHEETS, GONE = "sleep.sheets", "sleep.gone"
+# Columns of contacts that a sheet no longer has which has left.
+NO_MORE = np.array([FORCE_NOW, DEPTH_NOW, ACTS, *range(TURNING_NOW, TURNING_NOW + TURNING)])
 OF_STEPS = ("speeds", "missed", "may")
 
 
@@ -69,27 +80,43 @@ class Sleep:
         steering: Control,
         recorder: Recorder,
         sleeps: bool,
+        there: tuple[System, Ints] | None = None,
     ):
-        """`sleeps`: sheets may."""
-        self.system, self.work, self.steering = system, work, steering
+        """`sleeps`: sheets may; `there`: the part of the System that is there as the run begins, and which of
+        its pairs before those that are searched that has; None: all of it."""
+        from mdlgen.backends.lattice.kernels.integrate import momentum
+
+        self.work, self.steering = work, steering
+        self.system, self._chosen = there or (system, np.arange(system.search.first))
         self._model, self._whole, self._recorder = model, system, recorder
+        self._passes = passing(model)
         sheets, bodies = len(work.asleep.speeds), len(system.bodies)
         self._may = np.zeros(sheets, bool)
         self._air = model.contacts.air_viscosity > 0.0
         sleeps = sleeps and model.run.sleep and not len(system.bristles)
         sleeps = sleeps and not len(system.yields.hinges)
         if sheets and sleeps and not self._air.any():
-            self._may[: len(work.free.loose)] = work.free.loose
+            loose = work.free.loose if self.system is system else momentum.empty(system).loose
+            self._may[: len(loose)] = loose
         self._parts = Parts(model, system)
         self._sheets = np.zeros(sheets, bool)
         self._since, self._counted = np.zeros(sheets), np.zeros(sheets)
         self._wait = np.full(sheets, STILL_FOR * model.run.duration)
         self._touched = np.zeros(len(model.contacts))
         self._store = {name: np.zeros((bodies if sheets else 0, width)) for name, width in WIDTHS.items()}
-        self._chosen = np.arange(system.search.first)
-        self._beside = system.pairs["beside"][: system.search.first].copy()
+        self._beside = np.zeros(system.search.first, system.pairs["beside"].dtype)
+        self._beside[self._chosen] = self.system.pairs["beside"][: len(self._chosen)]
+        self.gone = np.zeros(sheets, bool)
         self._energies = np.zeros((groups(work), 3))
+        if self.system is not system:
+            self.gone[:] = ~np.array(at_start(model))
+            self._keep_starts()
         self._stuck = np.zeros(0, STRETCH)
+
+    @property
+    def asleep(self) -> NDArray[np.bool_]:
+        """Which sheets sleep, (sheets,)."""
+        return self._sheets
 
     def look(self, t: float, tolerance: float) -> None:
         """Finds islands, and puts to sleep what has been still for long enough at the time t [ms];
@@ -111,7 +138,7 @@ class Sleep:
         one, two = self._parts.sheets
         awake |= ~self._may
         awake[one[touched & (one >= 0) & self._parts.moves]] = True
-        still = ~np.isin(islands, islands[awake]) & ~self._sheets
+        still = ~np.isin(islands, islands[awake]) & ~self._sheets & ~self.gone
         if still.any():
             self._turn(self._sheets | still, t)
 
@@ -144,8 +171,8 @@ class Sleep:
         whole = whole._replace(yields=self._whole.yields)
         self._model, self._whole, self._parts = model, whole, Parts(model, whole)
         self.system, self._chosen = whole, np.arange(whole.search.first)
-        if self._sheets.any():
-            self.system, self._chosen = awake(whole, self._parts, self._sheets)
+        if self._sheets.any() or self.gone.any():
+            self.system, self._chosen = awake(whole, self._parts, self._sheets, self.gone)
         self.system.pairs["beside"][: len(self._chosen)] = self._beside[self._chosen]
         self.work = carried_over(model, self.work, self.system, marks)
         self._recorder.widen(model, whole, self.work.kept)
@@ -179,7 +206,7 @@ class Sleep:
         energies = self._ledger(t) + self._energies
 
         self._sheets = sheets
-        self.system, self._chosen = awake(self._whole, self._parts, sheets)
+        self.system, self._chosen = awake(self._whole, self._parts, sheets, self.gone)
         self.system.pairs["beside"][: len(self._chosen)] = self._beside[self._chosen]
         state, mid, matrix = room.empty(self.system, forces.WIDE)
         v, l, u, last, earlier = (self._store[name][self.system.nodes] for name in WIDTHS)
@@ -199,6 +226,47 @@ class Sleep:
 
         self._energies = energies - self._ledger(t)
         self._recorder.follow(self.work, self._energies)
+
+    def change(self, gone: NDArray[np.bool_], t: float) -> np.ndarray:
+        """From the time t [ms] on the sheets `gone` (sheets,) are not there, and all others are. Returns how
+        much more energy there is then: kinetic, elastic and potential, of one side, (groups, 3)."""
+        left, came = gone & ~self.gone, self.gone & ~gone
+        acts = self.work.kept.rows[:, ACTS] != 0.0
+        islands = self._islands(acts)
+        woken = np.isin(islands, islands[left]) & self._sheets
+        if woken.any():  # what lay on it, too
+            self._since[woken], self._counted[woken] = t, self.steering.counters[STEPS]
+            self._turn(self._sheets & ~woken, t)
+        rows, own = self.work.kept.rows, self._parts.of(left)
+        rows[own & acts, ENDED] = t
+        rows[np.ix_(own, NO_MORE)] = 0.0
+        self._since[came], self._counted[came] = t, self.steering.counters[STEPS]
+        before, asleep = self._ledger(t), self._energies
+        self.gone = gone
+        if came.any():
+            self._meet(self._parts.of(came))
+        self._turn(self._sheets, t)
+        self._energies = asleep
+        boxes = np.flatnonzero(np.append(gone, False)[self._parts.sheet_of])
+        self._stuck = self._stuck[~(np.isin(self._stuck["a"], boxes) | np.isin(self._stuck["b"], boxes))]
+        self._recorder.follow(self.work, self._energies)
+        return self._ledger(t) - before
+
+    def _keep_starts(self) -> None:
+        """Stores the velocities with which sheets come in."""
+        for name, array in zip(WIDTHS, starts(self._model, self._whole.nodes), strict=True):
+            self._store[name][self._whole.nodes] = array
+
+    def _meet(self, rows: NDArray[np.bool_]) -> None:
+        """Notes on which side of parts the boxes of contacts `rows` (contacts,) are as they come in."""
+        from mdlgen.backends.lattice.kernels import entries
+
+        some = np.flatnonzero(rows[self._whole.pairs["row"][: self._whole.search.first]])
+        pairs, state, motion = self._whole.pairs[some], self.work.state, self.work.mid.motion
+        pairs["beside"] = 0
+        shown = Motion(state.x, state.r, motion.u, motion.w)
+        entries.remember(self._whole.bodies, pairs, self._whole.tables.shapes, shown)
+        self._beside[some] = pairs["beside"]
 
     def _ledger(self, t: float) -> np.ndarray:
         """Kinetic, elastic and potential energy of what is awake, of one side, (groups, 3)."""
@@ -233,6 +301,7 @@ class Sleep:
         return {
             MARGIN: margin,
             SHEETS: self._sheets,
+            **({GONE: self.gone} if self._passes else {}),
             "sleep.since": self._since,
             "sleep.counted": self._counted,
             "sleep.wait": self._wait,
@@ -256,8 +325,10 @@ class Sleep:
             self._widen(with_margin(self._model, margin))
         if not len(self._sheets):
             return True
-        found = keep.load(number, {SHEETS: self._sheets}, (SHEETS,))
-        if found is not None and found[SHEETS].any():
+        like = {SHEETS: self._sheets} | ({GONE: self.gone} if self._passes else {})
+        found = keep.load(number, like, tuple(like))
+        if found is not None and (found[SHEETS].any() or self._passes):
+            self.gone = found.get(GONE, self.gone)
             self._turn(found[SHEETS], 0.0)
         return True
 

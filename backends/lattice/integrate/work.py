@@ -7,6 +7,7 @@ import numpy as np
 from mdlgen.backends.lattice.arrays import System
 from mdlgen.backends.lattice.bristles import begin
 from mdlgen.backends.lattice.hinges import begin as begin_hinges
+from mdlgen.backends.lattice.integrate.awake import Parts, awake
 from mdlgen.backends.lattice.integrate.films import films
 from mdlgen.backends.lattice.integrate.islands import groups, islands
 from mdlgen.backends.lattice.integrate.record import Recorder
@@ -26,7 +27,8 @@ from mdlgen.backends.lattice.kernels.state import (
     Workspace,
 )
 from mdlgen.mechanics.frame import Motion
-from mdlgen.model.tables import Floats, Model
+from mdlgen.model.passing import at_start, passing
+from mdlgen.model.tables import Floats, Ints, Model
 
 
 def start(model: Model, system: System) -> tuple[State, Midpoint, Matrix]:
@@ -40,12 +42,7 @@ def start(model: Model, system: System) -> tuple[State, Midpoint, Matrix]:
     state.x[:count], state.r[:count] = bodies.position, bodies.rotation.reshape(-1, 9)
     state.r[count] = np.eye(3).ravel()
     mid.motion.x[:], mid.motion.r[:] = state.x, state.r
-    nodes = system.nodes
-    turn, spin = bodies.rotation[nodes], bodies.spin[nodes]
-    state.v[:] = bodies.velocity[nodes]
-    own = np.einsum("nji,nj->ni", turn, spin)
-    state.l[:] = np.einsum("nij,nj->ni", turn, bodies.inertia[nodes] * own)
-    state.u[:, :3], state.u[:, 3:] = state.v, spin
+    state.v[:], state.l[:], state.u[:], _, _ = starts(model, system.nodes)
     for roller in model.rollers:
         if roller.begins_turning:  # with its shaft
             at = system.bodies["spin"][roller.body]
@@ -58,10 +55,32 @@ def start(model: Model, system: System) -> tuple[State, Midpoint, Matrix]:
     return state, mid, matrix
 
 
-def arrays(model: Model, system: System) -> Workspace:
-    """What a run works on, made for the start."""
+def starts(model: Model, nodes: Ints) -> tuple[Floats, ...]:
+    """What boxes, the bodies `nodes` (n,), come in with: velocities [mm/ms], angular momenta [N mm ms],
+    (n, 3) each, and velocities with angular velocities [rad/ms], (n, 6), as in two steps before."""
+    bodies = model.bodies
+    turn, spin, v = bodies.rotation[nodes], bodies.spin[nodes], bodies.velocity[nodes]
+    own = np.einsum("nji,nj->ni", turn, spin)
+    momentum = np.einsum("nij,nj->ni", turn, bodies.inertia[nodes] * own)
+    u = np.concatenate([v, spin], axis=1)
+    return v, momentum, u, u, u
+
+
+def beginning(model: Model, system: System) -> tuple[System, Ints]:
+    """The part of a System that is there as a run begins, and which of its pairs before those that are
+    searched that has: all of it where no sheet comes in later."""
+    there = np.array(at_start(model))
+    if there.all():
+        return system, np.arange(system.search.first)
+    return awake(system, Parts(model, system), np.zeros_like(there), ~there)
+
+
+def arrays(model: Model, whole: System, there: System | None = None) -> Workspace:
+    """What a run works on, made for the start. `there`: the part of the System that is there then, None: all
+    of it."""
     from mdlgen.backends.lattice.kernels import entries
 
+    system = whole if there is None else there
     state, mid, matrix = start(model, system)
     system.pairs["beside"][: system.search.first] = 0
     begin(system.bristles)
@@ -69,7 +88,7 @@ def arrays(model: Model, system: System) -> Workspace:
     contacts = len(model.contacts)
     kept = Kept(np.zeros((contacts, ROW)), np.zeros(system.marks, bool))
     sheets = len(model.sheets)
-    meet = sheets if len(system.search.regions) else 0
+    meet = sheets if len(whole.search.regions) or passing(model) else 0
     asleep = Asleep(
         speeds=np.zeros(meet),
         bodies=np.zeros(0, np.int64),
@@ -77,7 +96,7 @@ def arrays(model: Model, system: System) -> Workspace:
         may=np.zeros(1),
         rows=np.zeros(contacts, bool),
     )
-    work = workspace(model, system, (state, mid, matrix), kept, islands(model, system), asleep)
+    work = workspace(model, system, (state, mid, matrix), kept, islands(model, whole), asleep)
     motion = Motion(state.x, state.r, mid.motion.u, mid.motion.w)
     entries.remember(system.bodies, system.pairs, system.tables.shapes, motion)
     return work
@@ -132,7 +151,8 @@ def _own(array: Floats) -> Floats:
 def control(work: Workspace) -> Control:
     """Counts and settings of a run before its first step."""
     u, ub = work.state.u.copy(), work.state.ub.copy()
-    history = History(u, ub, u.copy(), np.zeros(3), np.zeros((len(work.free.loose), GUESSES)))
+    sheets = max(len(work.free.loose), len(work.asleep.speeds))
+    history = History(u, ub, u.copy(), np.zeros(3), np.zeros((sheets, GUESSES)))
     energies = np.zeros((groups(work), 4))
     return Control(np.zeros(5), np.zeros(COUNTERS), energies, history, np.zeros(7))
 
@@ -142,7 +162,7 @@ def warm(model: Model, system: System) -> None:
     from mdlgen.backends.lattice.kernels import entries
     from mdlgen.backends.lattice.kernels.integrate import integrate
 
-    work = arrays(model, system)
+    work = arrays(model, system, beginning(model, system)[0])
     integrate.run(work, 0.0, np.zeros(0), 1.0, control(work))
     Recorder(model, system, work).store(0.0)
     entries.PROGRAM.release()  # else the arrays of its last calls stay beside those of the run

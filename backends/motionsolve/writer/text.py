@@ -11,6 +11,7 @@ from mdlgen.altair.poisson import refuse_poisson
 from mdlgen.altair.reactions import refuse_rules
 from mdlgen.altair.rolling import refuse_rolling
 from mdlgen.altair.springs import refuse_compressed
+from mdlgen.altair.streams import refuse_passing
 from mdlgen.backends.motionsolve.writer import gate
 from mdlgen.backends.motionsolve.writer.banner import banner
 from mdlgen.backends.motionsolve.writer.environment import environment
@@ -31,6 +32,7 @@ def check(model: Model) -> None:
     """Raises RefusedError by name for what the deck cannot represent."""
     refuse_externals(model, "MotionSolve deck")
     refuse_axles(model, "MotionSolve deck")
+    refuse_passing(model, "MotionSolve deck")
     refuse_sticking(model, "MotionSolve deck")
     refuse_measured(model, "MotionSolve deck")
     refuse_yield(model, "MotionSolve deck")

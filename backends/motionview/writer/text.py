@@ -13,6 +13,7 @@ from mdlgen.altair.poisson import refuse_poisson
 from mdlgen.altair.reactions import refuse_rules
 from mdlgen.altair.rolling import refuse_rolling
 from mdlgen.altair.springs import refuse_compressed
+from mdlgen.altair.streams import refuse_passing
 from mdlgen.backends.motionview.writer import gate
 from mdlgen.backends.motionview.writer.banner import banner
 from mdlgen.backends.motionview.writer.contacts import force_views
@@ -37,6 +38,7 @@ def check(model: Model) -> None:
     """Raises RefusedError by name for what the text cannot represent."""
     refuse_externals(model, "MotionView text of the whole scene")
     refuse_axles(model, "MotionView text")
+    refuse_passing(model, "MotionView text")
     check_sheets(model)
     refuse_compressed(model, "MotionView text")
     refuse_rolling(model, "MotionView text")

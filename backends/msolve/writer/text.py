@@ -14,6 +14,7 @@ from mdlgen.altair.reactions import refuse_rules
 from mdlgen.altair.rolling import refuse_rolling
 from mdlgen.altair.springs import refuse_compressed
 from mdlgen.altair.statics import static_method
+from mdlgen.altair.streams import refuse_passing
 from mdlgen.backends.msolve.environment import environment
 from mdlgen.backends.msolve.writer import contacts, gate, sheets
 from mdlgen.backends.msolve.writer.banner import banner
@@ -38,6 +39,7 @@ def check(model: Model) -> None:
     who = "MotionSolve script"
     refuse_externals(model, who)
     refuse_axles(model, who)
+    refuse_passing(model, who)
     refuse_sticking(model, who)
     refuse_measured(model, who)
     refuse_yield(model, who)

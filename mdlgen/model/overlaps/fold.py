@@ -21,18 +21,22 @@ class Folds:
     def __init__(self, model: Model, solved: NDArray[np.bool_] | None = None) -> None:
         """`solved` (bodies,): those whose places are known, of a scene that is halved by its symmetry."""
         self._model = model
-        self._sheets: list[tuple[SheetPart, Ints]] = []
-        for sheet in model.sheets:
+        self._sheets: list[tuple[int, SheetPart, Ints]] = []
+        for k, sheet in enumerate(model.sheets):
             boxes = np.arange(sheet.first, sheet.first + sheet.count)
             if solved is not None:
                 boxes = boxes[solved[boxes]]
             if len(boxes) > 2:
-                self._sheets.append((sheet, boxes))
+                self._sheets.append((k, sheet, boxes))
 
-    def found(self, position: Floats, rotation: Floats, time: float) -> str | None:
+    def found(
+        self, position: Floats, rotation: Floats, time: float, there: NDArray[np.bool_] | None = None
+    ) -> str | None:
         """Why a run cannot go on from places (n, 3) [mm] and rotations (n, 9) of bodies at a time [ms]; None:
-        it can."""
-        for sheet, boxes in self._sheets:
+        it can. `there` (sheets,): sheets that are, None: all."""
+        for k, sheet, boxes in self._sheets:
+            if there is not None and not there[k]:
+                continue
             normals = rotation[boxes][:, 2::3]
             if not (normals @ normals.sum(axis=0) <= 0.0).any():
                 continue

@@ -75,20 +75,27 @@ class SheetOverlaps:
                 if part.name not in carrying and frozenset((sheet.name, part.name)) not in met:
                     yield k, part
 
-    def found(self, position: Floats, rotation: Floats, time: float) -> str | None:
+    def found(
+        self, position: Floats, rotation: Floats, time: float, there: NDArray[np.bool_] | None = None
+    ) -> str | None:
         """Why a run cannot go on from places (n, 3) [mm] and rotations (n, 9) of bodies at a time [ms]; None:
-        it can."""
+        it can. `there` (sheets,): sheets that are, None: all."""
         if not len(self._sheets) and not self._watched:
             return None
-        extents = [self._extent(boxes, position, rotation) for boxes in self._boxes]
+        extents = [
+            self._extent(boxes if there is None or there[k] else boxes[:0], position, rotation)
+            for k, boxes in enumerate(self._boxes)
+        ]
         self._moved(position, rotation)
-        for k in self._near(extents):
+        for k in self._near(extents, there):
             one, two = (int(s) for s in self._sheets[k])
             deep, apart = self._between(one, two, position, rotation)
             self._apart[k], self._then[k] = apart, self._way[one] + self._way[two]
             if deep > DEEP * self._thin(one, two):
                 return self._reason(f"sheet {self._name(one)}", f"sheet {self._name(two)}", deep, time)
         for sheet, part in self._watched:
+            if there is not None and not there[sheet]:
+                continue
             if self._apart_from(part, extents[sheet], position):
                 continue
             deep = self._inside(sheet, part, position, rotation, 0.0, HAIR)
@@ -96,6 +103,15 @@ class SheetOverlaps:
                 other = self._model.called(part.body)
                 return self._reason(f"sheet {self._name(sheet)}", other, deep, time)
         return None
+
+    def in_each_other(self, one: int, two: int, position: Floats, rotation: Floats) -> float:
+        """How deep two sheets, by their numbers, are in each other [mm]; 0 where that is no more than
+        contacts press them."""
+        extents = [self._extent(self._boxes[k], position, rotation) for k in (one, two)]
+        if _gap(*extents) > 0.0:
+            return 0.0
+        deep, _ = self._between(one, two, position, rotation)
+        return deep if deep > DEEP * self._thin(one, two) else 0.0
 
     def begin(self) -> tuple[list[tuple[SheetPart, SheetPart]], list[tuple[SheetPart, MachinePart]]]:
         """The pairs that lie on each other, or in each other, where they are given."""
@@ -105,7 +121,8 @@ class SheetOverlaps:
         sheets = [
             (model.sheets[a], model.sheets[b])
             for a, b in self._sheets.tolist()
-            if _gap(extents[a], extents[b]) < ON_SHEET * self._thin(a, b)
+            if model.sheets[a].enters == model.sheets[b].enters == 0.0
+            and _gap(extents[a], extents[b]) < ON_SHEET * self._thin(a, b)
             and self._between(a, b, position, rotation)[0] > -ON_SHEET * self._thin(a, b)
         ]
         parts = []
@@ -147,12 +164,14 @@ class SheetOverlaps:
                 self._way += [moved[boxes].max(initial=0.0) for boxes in self._boxes]
             self._last = position, rotation
 
-    def _near(self, extents: list[Extent]) -> list[int]:
+    def _near(self, extents: list[Extent], there: NDArray[np.bool_] | None) -> list[int]:
         """Pairs of sheets that are to be looked at; of the others the distance of their bounds is noted."""
         if not len(self._sheets):
             return []
         ways = self._way[self._sheets].sum(axis=1)
         due = np.flatnonzero(~(ways - self._then < self._apart))
+        if there is not None:
+            due = due[there[self._sheets[due]].all(axis=1)]
         low, high = (np.array([e[k] for e in extents]) for k in (0, 1))
         one, two = self._sheets[due].T
         gaps = np.maximum(low[one] - high[two], low[two] - high[one]).max(axis=1)

@@ -69,6 +69,8 @@ def roller_press(scene: Scene, name: str, before: Before) -> Press:
         else:
             # a mesh on the roller counts as the roller's own round here: the run finds the rest
             sheet = next(s for s in sheets if s.name == other)
+            if sheet.enters != 0.0:
+                continue  # it is not there yet
             shared = contacts.share[row] == "width"
             forces.append(balance.sheet_contact(sheet, axis, own_radius, roller.width, stiffness, shared))
     touch = balance.touch_offset(center, axis, direction, own_radius, roller.width, others, faces)
@@ -117,6 +119,8 @@ def plate_press(scene: Scene, name: str, before: Before) -> Press:
     forces = []
     for row in mine:
         one, k = contacts.part_a[row], float(contacts.stiffness[row])
+        if one in of and of[one].enters != 0.0:
+            continue
         if one in of:
             forces.append(balance.plate_contact(of[one], axes, plane.size, center, k))
             continue

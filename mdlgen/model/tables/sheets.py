@@ -116,10 +116,19 @@ class SheetPart(Frozen):
     derived: dict[str, float]
     damping_times: tuple[float, float] | None = None  # of MD and CD [ms]; None: by a ratio
     yields: tuple[float, float] | None = None  # curvatures along MD and CD [1/mm]; None: it is elastic
+    enters: float = 0.0  # when it comes in [ms]; 0: it is there as the run begins; nan: as a rule says
+    # planes beyond which it has left, a tuple each: axis, place on it [mm], and the side that is beyond
+    out: tuple[tuple[int, float, float], ...] = ()
+    out_at_rest: bool = False  # it has left where it is asleep
 
     @property
     def count(self) -> int:
         return self.n_x * self.n_y
+
+    @property
+    def passes(self) -> bool:
+        """Whether it may come in or leave during a run."""
+        return self.enters != 0.0 or bool(self.out) or self.out_at_rest
 
     @property
     def thick(self) -> Floats:

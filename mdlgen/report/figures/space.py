@@ -7,6 +7,7 @@ from collections.abc import Callable
 from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from mdlgen.geometry.solids import CORNERS, FACES
 from mdlgen.model.tables import Floats, Ints, Model
@@ -56,10 +57,11 @@ class Space:
         share: Floats,
         more: tuple[Mesh, ...] = (),
         drawn: float = 1.0,
+        there: NDArray[np.bool_] | None = None,
     ):
         """`place` and `turn` are of bodies and arms, (n, 3) and (n, 3, 3), `share` the colours of boxes from
         0 to 1; `more` are drawn too, in global axes where their body is -1. Boxes are drawn by `drawn` as
-        large along the sheet, so that joints are seen."""
+        large along the sheet, so that joints are seen. `there` (boxes,): boxes that are, None: all."""
         import matplotlib
         from matplotlib.colors import to_rgb
 
@@ -67,12 +69,14 @@ class Space:
         count = boxes.count(model)
         half = model.bodies.half[:count, None] * [drawn, drawn, 1.0]
         corners = np.einsum("nij,ncj->nci", turn[:count], CORNERS * half)
-        moved = corners + place[:count, None]
+        own = np.arange(count) if there is None else np.flatnonzero(there)
+        moved = corners[own] + place[own, None]
         self.faces: list[Floats] = list(moved[:, FACES].reshape(-1, 4, 3))
-        self.colours: list[tuple[float, ...]] = [ramp(float(v)) for v in np.repeat(share, len(FACES))]
+        self.colours: list[tuple[float, ...]] = [ramp(float(v)) for v in np.repeat(share[own], len(FACES))]
         self.plane: list[bool] = [False] * len(self.faces)
         # centre and normal of every box, by which what lies behind a sheet is known from what lies before it
-        self.boxes = place[:count], turn[:count, :, 2]
+        self.of_boxes, near = len(self.faces), own if own.size else np.arange(count)
+        self.boxes = place[near], turn[near, :, 2]
         held = [moved.reshape(-1, 3)]
         for mesh in (*machine(model), *more):
             points = mesh.points if mesh.body < 0 else mesh.points @ turn[mesh.body].T + place[mesh.body]
@@ -142,8 +146,7 @@ def _paint(panel: Any, scene: Space, view: Floats) -> None:
     near = KDTree(place).query(middle)[1]
     toward = normal[near] * -np.sign(normal[near] @ view[2])[:, None]
     before = np.einsum("ni,ni->n", middle - place[near], toward) > 0.0
-    count = len(FACES) * len(place)
-    group = np.where(np.arange(len(middle)) < count, 1, np.where(before, 2, 0))
+    group = np.where(np.arange(len(middle)) < scene.of_boxes, 1, np.where(before, 2, 0))
     group[np.array(scene.plane)] = -1
     order: Ints = np.lexsort((-(middle @ view[2]), group))
     shown = [int(k) for k in order if facing[k]]

@@ -12,6 +12,7 @@ from mdlgen.model.rotations import turns
 from mdlgen.model.tables import Floats, Model
 from mdlgen.report.arrows import BREADTH, arrows, longest
 from mdlgen.report.begin import Known, known
+from mdlgen.report.boxes import at_start
 from mdlgen.report.figures.space import VIEWS, Frame, Space, frame, picture
 from mdlgen.report.meshes import Mesh
 from mdlgen.report.motion import start
@@ -32,7 +33,7 @@ def still(model: Model) -> bytes:
     breadth = BREADTH * longest(model)
     more = tuple(Mesh(a.part, a.kind, -1, *a.solid(breadth)) for a in arrows(model))
     _, share = parts_of_sheets(model)
-    space = Space(model, place, turns(turn), share, more, _JOINT)
+    space = Space(model, place, turns(turn), share, more, _JOINT, at_start(model))
     frames = [frame([space.points @ view.T]) for view in VIEWS]
     gravity = float(np.linalg.norm(model.gravity)) * 1000.0
     message = "not run; " + (f"gravity {gravity:.4g} m/s$^2$" if gravity else "no gravity")

@@ -43,7 +43,11 @@ def stills(result: Result, at_ms: list[float]) -> dict[str, bytes]:
     place, turn = poses(result, at)
     matrix = turns(turn)
     name, unit, values, most = _colours(result, at)
-    scenes = [Space(result.model, place[k], matrix[k], values[k] / (most or 1.0)) for k in range(len(at))]
+    when = boxes.there(result, at)
+    scenes = [
+        Space(result.model, place[k], matrix[k], values[k] / (most or 1.0), there=here)
+        for k, here in enumerate(when)
+    ]
     message = f"colour: {name}, 0 to {most:.4g} {unit}"
     frames = [frame([scene.points @ view.T for scene in scenes]) for view in VIEWS]
     return {

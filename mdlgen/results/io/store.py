@@ -24,8 +24,9 @@ if TYPE_CHECKING:
 
 UNITS = "mm, N, g, ms, rad"
 STATES = ("time", "position", "rotation", "velocity", "spin", "contact_force")
-# which files of older versions do not have, or those of scenes in which nothing yields, or without motors
-TURNS = ("contact_torque", "contact_friction", "plastic", "behind")
+# which files of older versions do not have, or those of scenes in which nothing yields, or without motors, or
+# in which no sheet comes in or leaves
+TURNS = ("contact_torque", "contact_friction", "plastic", "behind", "stays")
 # of a Result, beside its states: what the tables of the file hold
 STORED = (
     "model", "solver", "status", "touched", "energy", "step", "steps", "rounds", "halved", "error_estimate",

@@ -1,0 +1,129 @@
+"""Sheets that come in and leave during a pass.
+
+A step ends where a sheet comes in, so that it does so at its time with its given state. Where one leaves is
+found by Newton's method over steps: a step ends where the sheet would be beyond its plane at the velocity
+that it has, until it is near enough. A sheet that is to leave at rest does so as it falls asleep.
+"""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+from numpy.typing import NDArray
+
+from mdlgen.backends.lattice.integrate.record import Recorder
+from mdlgen.backends.lattice.integrate.sleep import Sleep
+from mdlgen.model.overlaps.unheld import Unheld
+from mdlgen.model.passing import begun_stays, far
+from mdlgen.model.tables import Floats, Model
+
+# Of what run.tolerance lets a place be off: nearer than this to being beyond a plane a sheet is there.
+NEAR = 0.01
+# Of a step: nearer than this to the end of one an event is there. A step so short, of a run of 1e6 steps, is
+# as long as the round-off of its times.
+SAME = 1e-9
+
+
+class Passing:
+    """Which sheets of a pass are there."""
+
+    def __init__(self, model: Model, sleep: Sleep, recorder: Recorder, dt: float, overlaps: Unheld):
+        """`dt`: the step [ms]."""
+        self._model, self._sleep, self._recorder, self._slack = model, sleep, recorder, SAME * dt
+        self._overlaps = overlaps
+        self.enters = np.array([sheet.enters for sheet in model.sheets])
+        self.enters[np.isnan(self.enters)] = math.inf
+        stays = begun_stays(model)
+        self.active, recorder.stays = stays is not None, stays
+        self.stays = np.zeros((0, 2)) if stays is None else stays
+
+    @property
+    def there(self) -> NDArray[np.bool_] | None:
+        """Which sheets are there, (sheets,); None: all."""
+        return ~self._sleep.gone if self.active else None
+
+    def enter(self, sheet: int, t: float) -> None:
+        """A sheet that has not come yet comes in at a time [ms], not before the one that the pass is at."""
+        if math.isnan(self.stays[sheet, 0]):
+            self.enters[sheet] = t
+
+    def exact(self, t: float) -> float:
+        """The time of a sheet that comes in at t, but for round-off; else t."""
+        near = self.enters[np.abs(self.enters - t) <= self._slack]
+        return float(near[0]) if self.active and near.size else t
+
+    def cut(self, t: float, steps: Floats) -> tuple[Floats, bool]:
+        """The steps from t on, or those of them up to where the next sheet comes in or leaves; and whether
+        all of these are whole. Half of the way to where one leaves is gone first, until that is in the next
+        step: its velocity may change."""
+        if not self.active:
+            return steps, True
+        ends, leaves = np.cumsum(steps), self._leaves()
+        if leaves > ends[0]:
+            leaves = float(ends[max(0, int(np.searchsorted(ends, 0.5 * leaves)) - 1)])
+        due = min(self._comes() - t, leaves)
+        if not due < ends[-1] - self._slack:
+            return steps, True
+        whole = int(np.searchsorted(ends, due + self._slack, side="right"))
+        rest = due - (ends[whole - 1] if whole else 0.0)
+        return (np.append(steps[:whole], rest), False) if rest > self._slack else (steps[:whole], True)
+
+    def _comes(self) -> float:
+        """When the next sheet comes in [ms]."""
+        late = self.enters[self._sleep.gone & np.isnan(self.stays[:, 0])]
+        return float(late.min(initial=math.inf))
+
+    def _leaves(self) -> float:
+        """After what time the next sheet would leave at the velocity that it has [ms]."""
+        found = math.inf
+        for k in np.flatnonzero(~self._sleep.gone).tolist():
+            sheet = self._model.sheets[k]
+            if not sheet.out:
+                continue
+            state, own = self._sleep.work.state, self._sleep.system.sheets == k
+            if not own.any():
+                continue  # it is asleep
+            rate = state.v[own].mean(axis=0)
+            for (axis, _, side), gap in zip(sheet.out, -self._far(k), strict=True):
+                speed = side * float(rate[axis])
+                if speed > 0.0:
+                    found = min(found, max(float(gap), 0.0) / speed)
+        return found
+
+    def _far(self, k: int) -> Floats:
+        """See model.passing.far, of a sheet by its number."""
+        state = self._sleep.work.state
+        return far(self._model, self._model.sheets[k], state.x, state.r, self._overlaps.solved)
+
+    def turn(self, t: float) -> bool:
+        """Lets sheets leave and come in that do so at t; False: one cannot, see `taken`."""
+        if not self.active:
+            return True
+        sleep, leaves = self._sleep, self._leaving()
+        if leaves.any():
+            self._recorder.booked[1] -= sleep.change(sleep.gone | leaves, t)
+            self.stays[leaves, 1] = t
+        comes = self._coming(t)
+        if comes.any():
+            if self.taken(t) is not None:
+                return False
+            self._recorder.booked[0] += sleep.change(sleep.gone & ~comes, t)
+            self.stays[comes, 0] = self.enters[comes]
+        return True
+
+    def _coming(self, t: float) -> NDArray[np.bool_]:
+        return self._sleep.gone & np.isnan(self.stays[:, 0]) & (self.enters <= t + self._slack)
+
+    def _leaving(self) -> NDArray[np.bool_]:
+        leaves = self._sleep.asleep & [sheet.out_at_rest for sheet in self._model.sheets]
+        for k in np.flatnonzero(~self._sleep.gone).tolist():
+            sheet = self._model.sheets[k]
+            near = NEAR * self._model.run.tolerance * max(sheet.size) / 10.0
+            leaves[k] |= bool(sheet.out) and bool((self._far(k) >= -near).any())
+        return leaves
+
+    def taken(self, t: float) -> str | None:
+        """Why a sheet cannot come in at t: another one is where it comes in; None: none is."""
+        state = self._sleep.work.state
+        return self._overlaps.taken(self._coming(t), ~self._sleep.gone, state.x, state.r, t)

@@ -1,0 +1,82 @@
+"""Sheets that come in and leave during a run."""
+
+from __future__ import annotations
+
+import math
+from typing import TYPE_CHECKING
+
+import numpy as np
+from numpy.typing import NDArray
+
+from mdlgen.model.tables import Floats, Model, SheetPart
+
+if TYPE_CHECKING:
+    from mdlgen.spec.sheet import Sheet
+
+
+def planes_out(sheet: Sheet) -> tuple[tuple[int, float, float], ...]:
+    """The planes beyond which a sheet has left, as `SheetPart.out` has them: the side is the one on which it
+    does not come in."""
+    found = []
+    for out in sheet.out:
+        if out.axis is not None and out.at is not None:
+            axis = "xyz".index(out.axis)
+            found.append((axis, float(out.at), math.copysign(1.0, out.at - sheet.center[axis])))
+    return tuple(found)
+
+
+def passing(model: Model) -> bool:
+    """Whether a sheet of a Model may come in or leave during a run."""
+    return any(sheet.passes for sheet in model.sheets)
+
+
+def at_start(model: Model) -> list[bool]:
+    """Of each sheet whether it is there as the run begins."""
+    return [sheet.enters == 0.0 for sheet in model.sheets]
+
+
+def share(model: Model) -> float:
+    """The part of a run for which sheets are there, in the mean, about: each goes to the nearest plane beyond
+    which it has left at its own speed, or that of the fastest drive."""
+    end, drive = model.run.duration, max((abs(r.speed or 0.0) * r.radius for r in model.rollers), default=0.0)
+    stays = 0.0
+    for sheet in model.sheets:
+        begun = end if math.isnan(sheet.enters) else min(sheet.enters, end)
+        fast = max(float(np.linalg.norm(sheet.velocity)), drive)
+        rotation = model.bodies.rotation.reshape(-1, 9)
+        ways = -far(model, sheet, model.bodies.position, rotation)
+        stays += min(end - begun, float(ways.min()) / fast) if ways.size and fast > 0.0 else end - begun
+    return stays / (end * len(model.sheets)) if passing(model) else 1.0
+
+
+def begun_stays(model: Model) -> Floats | None:
+    """`Result.stays` as a run begins: 0 and nan of sheets that are there, nan of others, (sheets, 2); None
+    where no sheet comes in or leaves."""
+    if not passing(model):
+        return None
+    stays = np.full((len(model.sheets), 2), np.nan)
+    stays[at_start(model), 0] = 0.0
+    return stays
+
+
+def far(
+    model: Model,
+    sheet: SheetPart,
+    position: Floats,
+    rotation: Floats,
+    solved: NDArray[np.bool_] | None = None,
+) -> Floats:
+    """How far all of a sheet is beyond each of its planes [mm], (planes,), below 0: it is not, yet.
+
+    `position` (n, 3) [mm] and `rotation` (n, 9) are of all bodies; `solved` (n,): those whose places are
+    known, None: all.
+    """
+    boxes = np.arange(sheet.first, sheet.first + sheet.count)
+    if solved is not None:
+        boxes = boxes[solved[boxes]]
+    half, turn = model.bodies.half[boxes], np.abs(rotation[boxes]).reshape(-1, 3, 3)
+    found = [
+        (side * (position[boxes, axis] - at) - (turn[:, axis] * half).sum(axis=1)).min()
+        for axis, at, side in sheet.out
+    ]
+    return np.array(found)

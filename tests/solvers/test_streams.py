@@ -1,0 +1,206 @@
+"""Sheets that come in and leave in a run: closed forms, shifts in time, energy, resumed runs, both solvers."""
+
+from __future__ import annotations
+
+import math
+from pathlib import Path
+
+import numpy as np
+import pytest
+from asked import as_asked
+from cutting import Cut, Cutting, written_with
+from papers import on_paper
+from same import bits
+
+import mdlgen
+from mdlgen.backends.lattice import run as lattice
+from mdlgen.backends.lattice.integrate.passes import UNSEEN, _Pass, division
+from mdlgen.model.tables import Model
+from mdlgen.results.io.store import hdf5, load
+from mdlgen.results.result import Result
+from mdlgen.spec.load import loads
+
+G = 9.81e-3  # mm/ms^2
+# blocks that are thrown, and leave as they have fallen by 10 mm
+THROWN = on_paper("""
+name: thrown
+materials: {paper: HINGED_PAPER}
+sheets:
+  block: {material: paper, size: [20 mm, 20 mm], thickness: 1 mm, mass: 1 g, boxes: [1, 1],
+    velocity: [1 m/s, 0 m/s, 0 m/s]}
+streams: {shot: {of: block, times: [0 ms, 30.013 ms, 61 ms], out: beyond z = -10 mm}}
+run: {duration: 120 ms, step: 0.1 ms, print_step: 2 ms}
+""")
+# two fixed rollers, both driven, with notes that come in before them: nothing of a note stays in the machine
+DRAWN = on_paper("""
+name: drawn
+gravity: [0 m/s^2, 0 m/s^2, 0 m/s^2]
+materials: {paper: HINGED_PAPER}
+sheets:
+  note: {material: paper, size: [24 mm, 40 mm], thickness: 0.1 mm, mass: 0.15 g, boxes: [6, 4],
+    center: [-13 mm, 0 mm, 0 mm], velocity: [900 mm/s, 0 mm/s, 0 mm/s]}
+streams: {infeed: {of: note, every: 40 ms, count: 3, out: beyond x = 6 mm}}
+rollers:
+  lower: {center: [0 mm, 0 mm, -5 mm], axis: y, radius: 5 mm, width: 20 mm, mass: 1 g,
+    drive: {speed: 200 rad/s}}
+  upper: {center: [0 mm, 0 mm, 5 mm], axis: y, radius: 5 mm, width: 20 mm, mass: 1 g,
+    drive: {speed: -200 rad/s}}
+contacts:
+  - {between: [infeed, "*er"], stiffness: 100 N/mm^1.5, restitution: 0.4, friction: 0.4, smoothing: 20 mm/s}
+run: {duration: 125 ms, step: 0.1 ms, print_step: 1 ms, tolerance: 0.01}
+""")
+
+
+def model(text: str, *sets: str) -> Model:
+    return mdlgen.lower(loads(text, "streams", list(sets)))
+
+
+def falls(by: float) -> float:
+    """How long a fall takes [ms]."""
+    return math.sqrt(2.0 * by / G)
+
+
+@pytest.mark.parametrize("solver", ["lattice", "exudyn"])
+def test_blocks_come_in_and_leave_at_their_times(solver: str) -> None:
+    result = mdlgen.solve(model(THROWN), solver)
+    assert as_asked(result), result.status
+    assert result.stays is not None
+    enters = [0.0, 30.013, 61.0]
+    assert result.stays[:, 0].tolist() == enters
+    # all of the block is beyond -10 mm as its upper face is
+    fast = G * falls(10.5)
+    # a hundredth of the tolerance of a place, and what the last step does not know of the acceleration
+    near = (0.01 * 1e-3 * 2.0 + 0.5 * G * 0.1**2) / fast
+    assert np.allclose(result.stays[:, 1], np.array(enters) + falls(10.5), rtol=0.0, atol=near)
+    for k, begun in enumerate(enters):
+        at = result.time - begun
+        here = (at > 0.0) & (at < falls(10.5))
+        place = np.stack([at, 0.0 * at, -0.5 * G * at**2], axis=1)[here]
+        # the mid-point rule is exact for a constant acceleration; times of stored states are round
+        assert np.abs(result.position[here, k] - place).max() < 1e-9
+        gone = at >= falls(10.5)
+        assert np.ptp(result.position[gone, k], axis=0).max() == 0.0
+
+
+def test_a_note_of_a_stream_goes_as_a_single_one() -> None:
+    result = mdlgen.solve(model(DRAWN), "lattice")
+    alone = mdlgen.solve(model(DRAWN, "streams.infeed.count=1", "run.duration=45 ms"), "lattice")
+    assert as_asked(result) and as_asked(alone), (result.status, alone.status)
+    one, k = alone.model.sheets[0], result.model.sheets[2]
+    late = np.flatnonzero(result.time >= 80.0 - 1e-9)
+    moved = result.position[late[:45], k.first : k.first + k.count] - alone.position[:45, : one.count]
+    # in the norm of run.tolerance, of which both may have as much
+    assert np.sqrt(np.mean((moved**2).sum(axis=2))) < 0.01 * 31.0
+    stay = np.diff(result.stays, axis=1).ravel()
+    assert np.ptp(stay) < 0.1 and abs(stay[2] - np.diff(alone.stays).item()) < 0.1
+
+
+def test_what_comes_in_and_leaves_is_booked() -> None:
+    result = mdlgen.solve(model(THROWN), "lattice")
+    kinetic, energy = 0.5 * 1.0 * 1.0**2, result.energy  # g (mm/ms)^2, N mm
+    assert energy.entered == pytest.approx(2.0 * 1e-3 * kinetic * 1e3, rel=1e-12)
+    # three have left, with the kinetic energy of the fall and less potential energy
+    assert energy.left == pytest.approx(3.0 * kinetic, rel=1e-9)
+    assert abs(energy.balance_error) < 1e-9
+    assert energy.kinetic == 0.0
+
+
+def test_the_place_is_taken() -> None:
+    """In 5 ms it has moved by a quarter of its length, and fallen by an eighth of its thickness."""
+    result = mdlgen.solve(model(THROWN, "streams.shot.times=[0 ms, 5 ms]", "run.duration=20 ms"), "lattice")
+    assert not result.usable
+    assert result.status.startswith("sheet shot_2 comes in at 5 ms where sheet shot_1 still is")
+    assert result.time[-1] == 4.0  # of the last stored state
+
+
+def test_what_rests_leaves() -> None:
+    text = on_paper("""
+name: tray
+materials: {paper: HINGED_PAPER}
+sheets:
+  note: {material: paper, size: [20 mm, 20 mm], thickness: 1 mm, mass: 1 g, boxes: [1, 1],
+    center: [0 mm, 0 mm, 0.52 mm], out: [at rest, beyond z = -50 mm]}
+planes: {tray: {center: [0 mm, 0 mm, -1 mm], normal: z, size: [60 mm, 60 mm, 2 mm], mass: 10 g}}
+contacts:
+  - {between: [note, tray], stiffness: 100 N/mm^1.5, restitution: 0.1, friction: 0.5, smoothing: 10 mm/s}
+run: {duration: 100 ms, step: 0.1 ms}
+""")
+    result = mdlgen.solve(model(text), "lattice")
+    assert as_asked(result), result.status
+    left = float(result.stays[0, 1])
+    assert 5.0 < left < 60.0
+    assert [(e["kind"], e["sheet"]) for e in result.events if e["kind"] == "left"] == [("left", "note")]
+    assert result.contact_force[result.time > left].max() == 0.0
+    assert result.summary()["sheets"]["note"]["left_ms"] == left
+
+
+def test_a_rule_lets_sheets_in() -> None:
+    shot = "streams={shot: {of: block, by_rule: true, count: 2, out: beyond z = -10 mm}}"
+    made = model(THROWN, shot, "run.duration=60 ms")
+    assert np.isnan([sheet.enters for sheet in made.sheets]).all()
+    going = _Pass(made, lattice.build(made), division(made, 0.1), UNSEEN, math.inf)
+    going.steer(0.0, 0.0, False)
+    going.passing.enter(1, 7.03)
+    going.go()
+    result = going.result()
+    assert result.stays[1].tolist() == pytest.approx([7.03, 7.03 + falls(10.5)], abs=2e-4)
+    assert np.isnan(result.stays[0]).all()
+    assert np.array_equal(result.position[-1, 0], made.bodies.position[0])
+
+
+def test_halved_streams(monkeypatch: pytest.MonkeyPatch) -> None:
+    """One side of a symmetric scene, and both, which the solver takes where it is told to."""
+    one = mdlgen.solve(model(DRAWN, "run.duration=60 ms"), "lattice")
+    both = mdlgen.solve(model(DRAWN, "run.duration=60 ms", "run.symmetry=false"), "lattice")
+    assert one.halved and not both.halved
+    # iterations end within a tenth of the tolerance
+    assert np.abs(one.position[-1] - both.position[-1]).max() < 0.01
+    assert one.stays == pytest.approx(both.stays, abs=1e-3, nan_ok=True)
+    assert one.energy.left == pytest.approx(both.energy.left, rel=1e-3)
+
+
+@pytest.mark.parametrize("text", [THROWN, DRAWN])
+def test_a_stream_goes_on_to_the_same_bits(text: str, tmp_path: Path) -> None:
+    made = model(text, "run.print_step=5 ms", "run.step=0.5 ms", "run.duration=60 ms", "run.tolerance=0.1")
+    whole, cuts = lattice.solve(made), 0
+    provenance = written_with
+    while True:
+        try:
+            result = lattice.solve(
+                made, keep=Cutting(tmp_path / "c", provenance, 4 + 5 * cuts, most=2), threads=1
+            )
+            break
+        except Cut:
+            cuts, provenance = cuts + 1, None
+    assert cuts >= 2
+    assert bits(hdf5(result)) == bits(hdf5(whole))
+    assert result.energy == whole.energy
+    assert np.array_equal(result.stays, whole.stays, equal_nan=True)
+
+
+def test_the_file_has_when_sheets_are_there(tmp_path: Path) -> None:
+    result: Result = mdlgen.solve(model(THROWN), "lattice")
+    result.save(tmp_path)
+    again = load(tmp_path)
+    assert np.array_equal(again.stays, result.stays) and again.energy == result.energy
+    assert again.model.sheets[1].out == ((2, -10.0, -1.0),)
+
+
+def test_requirements_are_of_sheets_while_they_are_there() -> None:
+    asked = "speed above 990 mm/s throughout, left below 115 ms, no jam, sheets.shot_2.speed above 1 m/s"
+    result = mdlgen.solve(model(THROWN, f"require=[{asked}]"), "lattice")
+    assert [o.passed for o in result.verdict] == [True] * 4, [str(o) for o in result.verdict]
+    missed = mdlgen.solve(model(THROWN, "require=[left below 100 ms]"), "lattice").verdict[0]
+    assert not missed.passed and missed.of == "shot_3"
+
+
+def test_both_solvers_agree() -> None:
+    """Of notes through a nip, by the estimates of both."""
+    sets = ("run.duration=60 ms", "streams.infeed.count=2", "sheets.note.boxes=[3, 2]", "run.step=0.05 ms")
+    one, two = (mdlgen.solve(model(DRAWN, *sets), solver) for solver in ("lattice", "exudyn"))
+    assert as_asked(one) and as_asked(two), (one.status, two.status)
+    assert np.abs(one.stays - two.stays)[~np.isnan(one.stays)].max() < 0.1
+    assert one.energy.entered == pytest.approx(two.energy.entered, rel=1e-9)
+    assert one.energy.left == pytest.approx(two.energy.left, rel=0.02)
+    found = mdlgen.compare(one, two)
+    assert found.relative < 0.01, found
