@@ -81,6 +81,8 @@ class Arm(_Arm):
         torque: str = ...,
         stiffness: str = ...,
         damping: str = ...,
+        start: str = ...,
+        start_speed: str = ...,
     ) -> None: ...
 
 class Clamp(_Clamp):
@@ -239,6 +241,7 @@ class Load(_Load):
         force: Sequence[str] | None = ...,
         moment: Sequence[str] | None = ...,
         stress: str | None = ...,
+        profile: Sequence[Sequence[str | float]] | None = ...,
     ) -> None: ...
 
 class Material(_Material):
@@ -343,6 +346,8 @@ class Press(_Press):
         preload: str,
         free_length: str = ...,
         damping_ratio: float | str = ...,
+        start: str | None = ...,
+        start_speed: str = ...,
         carrier_mass: str | None = ...,
     ) -> None: ...
 
@@ -383,6 +388,7 @@ class Roller(_Roller):
         width: str = ...,
         mass: str = ...,
         drive: _Drive | Mapping[str, Any] | None = ...,
+        spin: str = ...,
         one_way: _OneWay | Mapping[str, Any] | None = ...,
         press: _Press | Mapping[str, Any] | None = ...,
         arm: _Arm | Mapping[str, Any] | None = ...,
@@ -418,6 +424,7 @@ class Scene(_Scene):
         author: str | float | None = ...,
         revision: str | float | None = ...,
         gravity: Sequence[str] = ...,
+        gravity_profile: Sequence[Sequence[str | float]] | None = ...,
         parameters: Mapping[str, str | float | Mapping[str, Any]] = ...,
         materials: Mapping[str, _Material | Mapping[str, Any]] = ...,
         rollers: Mapping[str, _Roller | Mapping[str, Any]] = ...,

@@ -17,6 +17,7 @@ from mdlgen.lints import (
     friction,
     idle,
     missing,
+    over_time,
     parameters,
     planes,
     sheets,
@@ -80,4 +81,6 @@ CHECKS: tuple[Callable[[Model], Iterator[Lint]], ...] = (
     covers.strain,
     covers.wide,
     covers.through,
+    over_time.factors,
+    over_time.far_start,
 )

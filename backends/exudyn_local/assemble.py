@@ -15,6 +15,7 @@ from mdlgen.backends.exudyn_local.shipped import air_slopes, begin_air, forces, 
 from mdlgen.backends.exudyn_local.state import Coordinates, Work
 from mdlgen.backends.exudyn_local.system import EULER, MM, MS, Pattern, System
 from mdlgen.mechanics.arm import AXIAL, INERTIA
+from mdlgen.model.starts import begun_rates
 from mdlgen.model.tables import Model
 
 
@@ -54,6 +55,8 @@ def assemble(exu, model: Model, system: System, pattern: Pattern, work: Work, re
         for r in model.rollers
         if r.one_way is not None and r.speed is not None
     }
+    for begun in begun_rates(model):
+        starts[int(system.bodies[begun.of][begun.body])] = begun.rate / MS * (1.0 if begun.turns else MM)
     for body in range(len(bodies.name)):
         row = system.bodies[body]
         n = row["first"]

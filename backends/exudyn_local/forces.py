@@ -19,6 +19,7 @@ from mdlgen.mechanics.corner import bodies_of, corner_forces
 from mdlgen.mechanics.curve import curve_excess, middle_and_gap
 from mdlgen.mechanics.driven import SENSE, clutch
 from mdlgen.mechanics.frame import Frame
+from mdlgen.mechanics.over_time import set_to
 from mdlgen.mechanics.pair import pair_force
 from mdlgen.mechanics.plastic import accept, bending, couple, flowed, stored
 from mdlgen.mechanics.point import (
@@ -166,6 +167,7 @@ def forces(tables, at, level, work):
     bodies, pairs, loads, gravity = tables.bodies, tables.pairs, tables.loads, tables.gravity
     motion, out, f = work.motion, work.out, work.forces
     q, v, t = at
+    set_to(tables.changes, loads, gravity, t, t)
     place_all(bodies, at, motion)
     f[:] = 0.0
     for body in range(bodies.size - 1):

@@ -25,6 +25,7 @@ from mdlgen.backends.lattice.kernels.state import (
 from mdlgen.backends.lattice.search import Search, plan
 from mdlgen.mechanics.corner import corners_of
 from mdlgen.mechanics.curve import curve_points
+from mdlgen.mechanics.over_time import Changing, changing
 from mdlgen.mechanics.pack import (
     gravity,
     number,
@@ -106,6 +107,7 @@ class System(NamedTuple):
     yields: Yielding
     shapes: Shapes
     corners: np.ndarray  # mechanics.corner.CORNER
+    changes: Changing
 
     @property
     def reach(self) -> int:
@@ -157,6 +159,7 @@ class System(NamedTuple):
             hinges=self.yields.hinges,
             shapes=self.shapes,
             corners=self._corners(),
+            changes=self.changes,
         )
 
 
@@ -190,12 +193,13 @@ def build(model: Model, fold: bool = True) -> System:
     pairs, search, marks = plan(model, listed)
     for name in ("shared", "k", "law", "sticking"):
         search.regions[name] = found[name]
+    loads, weight = pack_loads(model), gravity(model)
     return System(
         bodies=bodies,
         joints=joints,
         pairs=pairs,
-        loads=pack_loads(model),
-        gravity=gravity(model),
+        loads=loads,
+        gravity=weight,
         nodes=nodes,
         sheets=np.searchsorted([s.first for s in model.sheets], nodes, side="right") - 1,
         offsets=offsets(bodies, joints, corners),
@@ -211,6 +215,7 @@ def build(model: Model, fold: bool = True) -> System:
         yields=yielding(model, joints, of),
         shapes=shape_tables(model),
         corners=corners,
+        changes=changing(model, loads, weight),
     )
 
 

@@ -16,7 +16,8 @@ part STILL of the speed that iterations may leave, a tenth of the run's toleranc
 fastest. A sheet that woke waits twice as long.
 
 Sheets with air on them do not sleep, since a film closes slowly. Nor does an island of which a sheet hangs on
-something, or touches a part that moves, nor any sheet of a scene where sheets stick on other parts.
+something, or touches a part that moves, nor any sheet of a scene where sheets stick on other parts, or where
+loads or gravity change over time.
 """
 
 from __future__ import annotations
@@ -77,7 +78,7 @@ class Sleep:
         self._may = np.zeros(sheets, bool)
         self._air = model.contacts.air_viscosity > 0.0
         sleeps = sleeps and model.run.sleep and not len(system.bristles)
-        sleeps = sleeps and not len(system.yields.hinges)
+        sleeps = sleeps and not len(system.yields.hinges) and not len(system.changes.laws)
         if sheets and sleeps and not self._air.any():
             self._may[: len(work.free.loose)] = work.free.loose
         self._parts = Parts(model, system)

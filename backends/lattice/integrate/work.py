@@ -26,6 +26,7 @@ from mdlgen.backends.lattice.kernels.state import (
     Workspace,
 )
 from mdlgen.mechanics.frame import Motion
+from mdlgen.model.starts import begun_rates
 from mdlgen.model.tables import Floats, Model
 
 
@@ -52,6 +53,10 @@ def start(model: Model, system: System) -> tuple[State, Midpoint, Matrix]:
             if at < 0:
                 continue  # left out, see mirror
             state.vb[at] = state.ub[at] = roller.prescribed(0.0)
+    for begun in begun_rates(model):
+        at = system.bodies[begun.of][begun.body]
+        if at >= 0:  # else it is left out
+            state.vb[at] = state.ub[at] = begun.rate
     return state, mid, matrix
 
 

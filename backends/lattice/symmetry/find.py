@@ -32,6 +32,8 @@ def find(model: Model, system: System) -> Mirror | None:
         return None  # air presses across the plane
     if model.contacts.frictions is not None:
         return None  # a field that scatters has no image
+    if model.changes:
+        return None  # loads on both sides may change by unlike factors
     for axis in (1, 0):
         normal = model.sheets[0].rotation[:, axis]
         mirror = _plane(model, normal, float(normal @ model.sheets[0].center))

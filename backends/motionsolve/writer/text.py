@@ -8,6 +8,7 @@ from mdlgen.altair.parts import refuse_unwritten
 from mdlgen.altair.poisson import refuse_poisson
 from mdlgen.altair.rolling import refuse_rolling
 from mdlgen.altair.springs import refuse_compressed
+from mdlgen.altair.starts import refuse_starts
 from mdlgen.backends.motionsolve.writer import gate
 from mdlgen.backends.motionsolve.writer.banner import banner
 from mdlgen.backends.motionsolve.writer.environment import environment
@@ -37,6 +38,7 @@ def check(model: Model) -> None:
     refuse_rolling(model, "MotionSolve deck")
     refuse_air(model, "MotionSolve deck")
     refuse_poisson(model, "MotionSolve deck")
+    refuse_starts(model, "MotionSolve deck")
 
 
 def emit(model: Model) -> str:

@@ -10,6 +10,7 @@ from mdlgen.altair.parts import refuse_unwritten
 from mdlgen.altair.poisson import refuse_poisson
 from mdlgen.altair.rolling import refuse_rolling
 from mdlgen.altair.springs import refuse_compressed
+from mdlgen.altair.starts import refuse_starts
 from mdlgen.backends.motionview.writer import gate
 from mdlgen.backends.motionview.writer.banner import banner
 from mdlgen.backends.motionview.writer.contacts import force_views
@@ -36,6 +37,7 @@ def check(model: Model) -> None:
     check_sheets(model)
     refuse_compressed(model, "MotionView text")
     refuse_rolling(model, "MotionView text")
+    refuse_starts(model, "MotionView text")
 
 
 def check_sheets(model: Model) -> None:
