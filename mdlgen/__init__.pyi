@@ -87,6 +87,8 @@ class Arm(_Arm):
         torque: str = ...,
         stiffness: str = ...,
         damping: str = ...,
+        start: str = ...,
+        start_speed: str = ...,
     ) -> None: ...
 
 class Bearing(_Bearing):
@@ -274,6 +276,7 @@ class Load(_Load):
         force: Sequence[str] | None = ...,
         moment: Sequence[str] | None = ...,
         stress: str | None = ...,
+        profile: Sequence[Sequence[str | float]] | None = ...,
     ) -> None: ...
 
 class Material(_Material):
@@ -396,6 +399,8 @@ class Press(_Press):
         preload: str,
         free_length: str = ...,
         damping_ratio: float | str = ...,
+        start: str | None = ...,
+        start_speed: str = ...,
         carrier_mass: str | None = ...,
     ) -> None: ...
 
@@ -436,6 +441,7 @@ class Roller(_Roller):
         width: str = ...,
         mass: str = ...,
         drive: _Drive | Mapping[str, Any] | None = ...,
+        spin: str = ...,
         one_way: _OneWay | Mapping[str, Any] | None = ...,
         limiter: _Limiter | Mapping[str, Any] | None = ...,
         bearing: _Bearing | Mapping[str, Any] | None = ...,
@@ -473,6 +479,7 @@ class Scene(_Scene):
         author: str | float | None = ...,
         revision: str | float | None = ...,
         gravity: Sequence[str] = ...,
+        gravity_profile: Sequence[Sequence[str | float]] | None = ...,
         parameters: Mapping[str, str | float | Mapping[str, Any]] = ...,
         materials: Mapping[str, _Material | Mapping[str, Any]] = ...,
         rollers: Mapping[str, _Roller | Mapping[str, Any]] = ...,

@@ -19,6 +19,7 @@ from mdlgen.lints import (
     gates,
     idle,
     missing,
+    over_time,
     parameters,
     planes,
     reactions,
@@ -101,4 +102,6 @@ CHECKS: tuple[Callable[[Model], Iterator[Lint]], ...] = (
     gates.late,
     gates.unbalanced,
     gates.soft,
+    over_time.factors,
+    over_time.far_start,
 )

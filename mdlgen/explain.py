@@ -317,6 +317,16 @@ SCENE = {
         "Its boxes are watched in bounds that follow from all that may move them in the run, and the plane "
         "is outside of these. A sheet that never leaves costs time to the end of the run."
     ),
+    "W183": "A load, or gravity, has a factor over time that is 0 from the start of the run to its end.",
+    "W184": (
+        "A factor over time has corners after the end of the run. What it does there is not simulated. A "
+        "static analysis has the factor of the first corner."
+    ),
+    "W185": (
+        "A pressed roller begins further from where it touches than its spring or its contact can take: "
+        "drawn back by the whole length of the spring, or further ahead than half of its radius. A local run "
+        "does not need the length of a spring, but MotionView does."
+    ),
 }
 
 TEXT = {

@@ -16,6 +16,7 @@ from mdlgen.backends.exudyn_local.state import Coordinates, Work
 from mdlgen.backends.exudyn_local.system import EULER, MM, MS, Pattern, System
 from mdlgen.mechanics.arm import AXIAL, INERTIA
 from mdlgen.mechanics.records import FOLLOWER
+from mdlgen.model.starts import begun_rates
 from mdlgen.model.tables import Model
 
 
@@ -72,6 +73,8 @@ def assemble(
         for r in model.rollers
         if r.begins_turning
     }
+    for begun in begun_rates(model):
+        starts[int(system.bodies[begun.of][begun.body])] = begun.rate / MS * (1.0 if begun.turns else MM)
     for body in range(len(bodies.name)):
         row = system.bodies[body]
         n = row["first"]

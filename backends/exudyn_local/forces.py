@@ -21,6 +21,7 @@ from mdlgen.mechanics.curve import curve_excess, middle_and_gap
 from mdlgen.mechanics.driven import SENSE, turned
 from mdlgen.mechanics.frame import Frame
 from mdlgen.mechanics.gate import stop
+from mdlgen.mechanics.over_time import set_to
 from mdlgen.mechanics.pair import pair_force
 from mdlgen.mechanics.plastic import accept, bending, couple, flowed, stored
 from mdlgen.mechanics.point import (
@@ -175,6 +176,7 @@ def forces(tables, at, level, work):
     bodies, pairs, loads, gravity = tables.bodies, tables.pairs, tables.loads, tables.gravity
     motion, out, f = work.motion, work.out, work.forces
     q = at.q
+    set_to(tables.changes, loads, gravity, at.t, at.t)
     place_all(bodies, at, motion)
     f[:] = 0.0
     for body in range(bodies.size - 1):

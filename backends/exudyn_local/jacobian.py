@@ -16,6 +16,7 @@ from mdlgen.backends.exudyn_local.forces import (
 )
 from mdlgen.backends.exudyn_local.place import place_all, place_owner
 from mdlgen.mechanics.driven import SENSE
+from mdlgen.mechanics.over_time import set_to
 from mdlgen.program.kernel import njit
 
 # Perturbations of the difference quotients: positions and Euler parameters, velocities [SI]. A static run
@@ -75,6 +76,7 @@ def jacobian(tables, elements, at, level, by, central, owner, work, data):
     block_start, dofs, dof_start, slots, slot_start = elements
     bodies, motion, f, (by_q, by_v) = tables.bodies, work.motion, work.forces, by
     q, v = at.q, at.v
+    set_to(tables.changes, tables.loads, tables.gravity, at.t, at.t)
     place_all(bodies, at, motion)
     if tables.stick.pairs.size > 0:
         weigh_patches(tables, at, motion)

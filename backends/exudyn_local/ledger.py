@@ -17,10 +17,12 @@ from mdlgen.mechanics.arm import (
     STIFFNESS,
     hung,
     speeding,
+    torque_of,
 )
 from mdlgen.mechanics.axle import acting
 from mdlgen.mechanics.driven import prescribed, turned
 from mdlgen.mechanics.gate import GATE, power_of, stop
+from mdlgen.mechanics.over_time import set_to, weight_changes
 from mdlgen.mechanics.point import (
     DISSIPATED,
     FORCE_B,
@@ -62,6 +64,23 @@ def _seen(bodies, pair, motion, t, out, pair_out, i):
 
 
 @njit(cache=True, error_model="numpy")
+def _weights(tables, at, motion):
+    """Power of all weights [W]."""
+    bodies, gravity, power = tables.bodies, three(tables.gravity), 0.0
+    for body in range(bodies.size - 1):
+        slide, rate = bodies[body].slide, dot(gravity, vec(motion.u, body))
+        if bodies[body].first >= 0:
+            power += bodies[body].mass * rate
+        elif slide >= 0 and bodies[body].swings == 0:
+            power += bodies[body].press[INERTIA] * rate
+        elif slide >= 0:
+            torque = torque_of(bodies[body], at.q[slide], gravity, at.t, INSTANT)
+            torque += speeding(bodies[body], at.t, INSTANT)
+            power += bodies[body].mass * rate + torque * at.v[slide]
+    return power
+
+
+@njit(cache=True, error_model="numpy")
 def ledger(tables, at, work, pair_out, totals):
     """Energies and powers at a state into `totals` (columns KINETIC, ELASTIC, ... of state.py).
 
@@ -71,8 +90,12 @@ def ledger(tables, at, work, pair_out, totals):
     motion, f = work.motion, work.forces
     x, r, u, w = motion
     q, v, t = at
+    set_to(tables.changes, loads, gravity, t, t)
     place_all(bodies, at, motion)
     kinetic = elastic = potential = lost = driven = 0.0
+    if weight_changes(tables.changes):
+        driven += _weights(tables, at, motion)
+        gravity[:] = 0.0  # until it is set again: such a weight has no potential
     for body in range(bodies.size - 1):
         if bodies[body].first >= 0:
             spin = back(mat(r, body), vec(w, body))

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 
 from mdlgen.mechanics.frame import Motion
+from mdlgen.mechanics.over_time import Changing
 from mdlgen.mechanics.point import MOST_POINTS, OUT, POINT
 from mdlgen.mechanics.shapes import Shapes
 from mdlgen.mechanics.turning import TURNING
@@ -38,6 +39,7 @@ class Tables(NamedTuple):
     stick: Sticking
     hinges: np.ndarray  # mechanics.plastic.HINGE, of the bushings that yield
     corners: np.ndarray
+    changes: Changing  # loads and gravity over time, which are set to a time before they are read
 
 
 class Coordinates(NamedTuple):

@@ -19,6 +19,7 @@ from mdlgen.backends.exudyn_local.state import Tables
 from mdlgen.errors import RefusedError
 from mdlgen.mechanics.corner import corners_of
 from mdlgen.mechanics.curve import curve_points
+from mdlgen.mechanics.over_time import Changing, changing
 from mdlgen.mechanics.pack import Units, gravity, number, pack_bodies, pack_bushings, pack_loads, pack_pairs
 from mdlgen.mechanics.plastic import HINGE
 from mdlgen.mechanics.records import (
@@ -85,6 +86,7 @@ class System(NamedTuple):
     stick: Sticking
     hinges: np.ndarray  # mechanics.plastic.HINGE, in the order of Model.plastic [rad, N m]
     corners: np.ndarray  # mechanics.corner.CORNER
+    changes: Changing
 
     @property
     def tables(self) -> Tables:
@@ -101,6 +103,7 @@ class System(NamedTuple):
             stick=self.stick,
             hinges=self.hinges,
             corners=self.corners,
+            changes=self.changes,
         )
 
 
@@ -137,7 +140,8 @@ def build(model: Model, gone: NDArray[np.bool_] | None = None) -> tuple[System, 
     film = film_of(model, free, SI)
     free += len(film.cells)
     bushings, blocks = _bushings(model, gone)
-    loads = pack_loads(model, SI)
+    loads, weight = pack_loads(model, SI), gravity(model, SI)
+    changes = changing(model, loads, weight, MS)
     corners = corners_of(model, bushings["row"], SI)
     if gone is not None:
         corners = corners[~gone[corners["sheet"]]]
@@ -150,7 +154,7 @@ def build(model: Model, gone: NDArray[np.bool_] | None = None) -> tuple[System, 
         bushings=bushings,
         pairs=pairs,
         loads=loads,
-        gravity=gravity(model, SI),
+        gravity=weight,
         elements=elements,
         free=free,
         points=points,
@@ -159,6 +163,7 @@ def build(model: Model, gone: NDArray[np.bool_] | None = None) -> tuple[System, 
         stick=stick,
         hinges=_hinges(model, bushings),
         corners=corners,
+        changes=changes,
     )
     return system, pattern
 

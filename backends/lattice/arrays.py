@@ -26,6 +26,7 @@ from mdlgen.backends.lattice.search import Search, plan
 from mdlgen.mechanics.corner import corners_of
 from mdlgen.mechanics.curve import curve_points
 from mdlgen.mechanics.gate import GATE
+from mdlgen.mechanics.over_time import Changing, changing
 from mdlgen.mechanics.pack import (
     gravity,
     number,
@@ -107,6 +108,7 @@ class System(NamedTuple):
     yields: Yielding
     shapes: Shapes
     corners: np.ndarray  # mechanics.corner.CORNER
+    changes: Changing
 
     @property
     def reach(self) -> int:
@@ -159,6 +161,7 @@ class System(NamedTuple):
             hinges=self.yields.hinges,
             shapes=self.shapes,
             corners=self._corners(),
+            changes=self.changes,
         )
 
 
@@ -192,12 +195,13 @@ def build(model: Model, fold: bool = True) -> System:
     pairs, search, marks = plan(model, listed)
     for name in ("shared", "k", "law", "sticking"):
         search.regions[name] = found[name]
+    loads, weight = pack_loads(model), gravity(model)
     return System(
         bodies=bodies,
         joints=joints,
         pairs=pairs,
-        loads=pack_loads(model),
-        gravity=gravity(model),
+        loads=loads,
+        gravity=weight,
         nodes=nodes,
         sheets=np.searchsorted([s.first for s in model.sheets], nodes, side="right") - 1,
         offsets=offsets(bodies, joints, corners),
@@ -213,6 +217,7 @@ def build(model: Model, fold: bool = True) -> System:
         yields=yielding(model, joints, of),
         shapes=shape_tables(model),
         corners=corners,
+        changes=changing(model, loads, weight),
     )
 
 

@@ -22,7 +22,7 @@ GROUPS = {
         *("peel", "pick", "retard", "stall", "stream"),
     ),
     "Material": ("cantilever", "saddle", "snatch", "crease"),
-    "Closed forms": tuple(f"verify/{n}" for n in ("drop", "slide", "aslant", "incline", "tension")),
+    "Closed forms": tuple(f"verify/{n}" for n in ("drop", "slide", "aslant", "incline", "spun", "tension")),
     "Closed forms, bent and turned": tuple(f"verify/{n}" for n in ("hanging", "rollup", "flip")),
 }
 HEAD = f"""{NOTE}# Gallery

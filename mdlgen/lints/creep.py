@@ -84,8 +84,8 @@ def _slopes(model: Model) -> Iterator[_Held]:
             continue
         if not _lies_on(model, sheet, plane) or not _alone(model, sheet, row):
             continue
-        pressed = -float(model.gravity @ plane.normal)
-        pulled = float(np.linalg.norm(model.gravity + pressed * plane.normal))
+        pressed = -float(model.begun_gravity @ plane.normal)
+        pulled = float(np.linalg.norm(model.begun_gravity + pressed * plane.normal))
         limit = float(table.mu_static[row]) * pressed
         if limit <= pulled:
             continue  # it falls off, or slides

@@ -21,7 +21,9 @@ def sinks(model: Model) -> Iterator[Lint]:
     for row in np.flatnonzero(table.kind == BOX_PLANE).tolist():
         sheet, plane = sheets[table.part_a[row]], planes[table.part_b[row]]
         boxes = slice(sheet.first, sheet.first + sheet.count)
-        weight = float(model.bodies.mass[boxes].sum()) * max(0.0, -float(model.gravity @ plane.normal))  # N
+        weight = float(model.bodies.mass[boxes].sum()) * max(
+            0.0, -float(model.begun_gravity @ plane.normal)
+        )  # N
         each = weight / sheet.count
         depth = (each / float(table.stiffness[row])) ** (2 / 3)
         if depth > sheet.thickness:

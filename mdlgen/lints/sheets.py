@@ -80,7 +80,7 @@ def idle_clamp(model: Model) -> Iterator[Lint]:
     for sheet in model.sheets:
         boxes = slice(sheet.first, sheet.first + sheet.count)
         acts = (
-            np.any(model.gravity)
+            np.any(model.most_gravity)
             or any(sheet.first <= body < sheet.first + sheet.count for body in model.loads.body)
             or np.any(model.bodies.velocity[boxes])
             or np.any(model.bodies.spin[boxes])

@@ -14,6 +14,7 @@ import numpy as np
 
 from mdlgen.mechanics.driven import prescribed
 from mdlgen.mechanics.vector import add, cross, dot, exp_rotation, rotate, scale, sub, three
+from mdlgen.model.rotations import matrices
 from mdlgen.model.tables import RollerPart
 from mdlgen.program.kernel import njit
 
@@ -31,12 +32,15 @@ def arm(row: np.void, roller: RollerPart, length: float = 1.0, mass: float = 1.0
         return
     row["swings"] = 1 if roller.speed is None else 2
     row["pivot"], row["turn"] = part.pivot * length, roller.axis
-    row["hang"] = part.mass * mass * (part.center - part.pivot) * length
+    hang = part.center - part.pivot
+    if part.angle != 0.0:  # angles of a run are from where it begins
+        hang = matrices(part.angle * roller.axis[None])[0] @ hang
+    row["hang"] = part.mass * mass * hang * length
     inertia = roller.swung_inertia * mass * length**2
     row["press"][:AXIAL] = (
         part.stiffness * length,
         part.damping * length * time,
-        part.torque * length,
+        (part.torque - part.stiffness * part.angle) * length,
         inertia,
     )
 

@@ -23,7 +23,7 @@ def impact_time(model: Model, row: int, mass: float) -> float:
     Against a box of another sheet, or a pressed plate, the reduced mass counts."""
     sheet, part = _parts(model, row)
     assert isinstance(sheet, SheetPart), "the first part of all contacts but those of two rollers"
-    gravity, start = math.hypot(*model.gravity), math.hypot(*sheet.velocity)
+    gravity, start = math.hypot(*model.most_gravity), math.hypot(*sheet.velocity)
     if isinstance(part, SheetPart):
         mass = mass * part.derived["m"] / (mass + part.derived["m"])
         start += math.hypot(*part.velocity)
@@ -56,15 +56,36 @@ def approach_time(model: Model, row: int) -> float:
         if speed > 0.0:
             shortest = lasting(mass, stiffness, speed)
     for roller, other in ((first, second), (second, first)):
-        if not isinstance(roller, RollerPart) or roller.arm is None:
+        if not isinstance(roller, RollerPart):
             continue
-        gap = _gap(roller, other)
-        length = float(np.linalg.norm(roller.center - roller.arm.pivot))
-        mass = roller.swung_inertia / length**2
-        pull = abs(roller.arm.torque) / length + mass * float(np.linalg.norm(model.gravity))
-        if gap > TOUCHING and pull > 0.0:
-            shortest = min(shortest, lasting(mass, stiffness, math.sqrt(2.0 * pull / mass * gap)))
+        gap = _gap(roller, model.bodies.position[roller.body], other)
+        found = _thrown(model, roller) if gap > TOUCHING else None
+        if found is not None:
+            mass, pull, speed = found
+            shortest = min(
+                shortest, lasting(mass, stiffness, math.hypot(speed, math.sqrt(2.0 * pull / mass * gap)))
+            )
     return shortest
+
+
+def _thrown(model: Model, roller: RollerPart) -> tuple[float, float, float] | None:
+    """Mass, pull [N] and first speed [mm/ms] at which a roller on an arm, or one whose press begins off its
+    balance, goes at its counterpart; None: it does not."""
+    weight = float(np.linalg.norm(model.most_gravity))
+    if roller.arm is not None:
+        arm = roller.arm
+        length = float(np.linalg.norm(roller.center - arm.pivot))
+        mass = roller.swung_inertia / length**2
+        pull = abs(arm.torque) / length + abs(arm.stiffness * arm.angle) / length + mass * weight
+        speed = abs(arm.speed) * length
+    elif roller.press is not None and (roller.press.off > 0.0 or roller.press.speed != 0.0):
+        press = roller.press
+        mass = roller.loaded_mass + press.carrier_mass
+        pull = press.preload + press.stiffness * press.off + mass * weight
+        speed = abs(press.speed)
+    else:
+        return None
+    return (mass, pull, speed) if pull > 0.0 or speed > 0.0 else None
 
 
 def _held(model: Model, sheet: SheetPart) -> bool:
@@ -78,7 +99,7 @@ def _falling(model: Model, sheet: SheetPart, plane: PlanePart) -> float:
     """Speed along a plane's normal that a sheet over its face falls at it with [mm/ms]."""
     height = float((sheet.center - plane.center) @ plane.normal)
     height -= 0.5 * (plane.size[2] + float(sheet.thick.max()))
-    pull = -float(model.gravity @ plane.normal)
+    pull = -float(model.most_gravity @ plane.normal)
     if height <= TOUCHING or pull <= 0.0:
         return 0.0
     return min(math.sqrt(2.0 * pull * height), pull * model.run.duration)
@@ -97,9 +118,10 @@ def _velocity(part) -> np.ndarray:
     return np.array(part.velocity) if isinstance(part, SheetPart) else np.zeros(3)
 
 
-def _gap(roller: RollerPart, other) -> float:
-    """Distance of a roller from a parallel one, or from the plane of a sheet; 0 from other parts."""
-    way = roller.center - other.center
+def _gap(roller: RollerPart, place: np.ndarray, other) -> float:
+    """Distance of a roller at a place from a parallel one, or from the plane of a sheet; 0 from other
+    parts."""
+    way = place - other.center
     if isinstance(other, SheetPart):
         return abs(float(way @ other.rotation[:, 2])) - roller.reach - 0.5 * float(other.thick.max())
     if isinstance(other, RollerPart):

@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 
 from mdlgen.errors import SpecError
-from mdlgen.model import grid, naming
+from mdlgen.model import grid, naming, over_time
 from mdlgen.model.curves import lower_curves
 from mdlgen.model.ends import with_ends
 from mdlgen.model.external import external_pairs, lower_externals
@@ -88,7 +88,7 @@ def _lower(scene: Scene) -> Model:
     parts |= {"rollers": rollers, "planes": planes, "guides": guides}
     contacts = replace(contacts, spread=spreads(sheets, rollers, contacts))
     externals = lower_externals(scene)
-    gravity = np.array(scene.gravity)
+    gravity, profile = np.array(scene.gravity), over_time.corners(scene.gravity_profile)
     machine = tuple(part for kind in KINDS for part in parts[kind.table])
     bodies = _bodies(sheets, boxes, rollers, machine)
     supports = tuple(
@@ -122,7 +122,7 @@ def _lower(scene: Scene) -> Model:
         curves=lower_curves(scene, sheets, bushings, long, wide),
         contacts=contacts,
         pairs=find_pairs(
-            gravity,
+            over_time.most(profile) * gravity,
             sheets,
             machine,
             bodies,
@@ -150,6 +150,7 @@ def _lower(scene: Scene) -> Model:
         plastic=plastic,
         corners=corners,
         reactions=lower_reactions(scene),
+        gravity_profile=profile,
     )
 
 

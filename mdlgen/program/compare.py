@@ -48,6 +48,7 @@ CALM: dict[str, tuple[str, ...]] = {
     "verify/incline": (),
     "verify/rollup": (),
     "verify/slide": ("run.tolerance=1e-4",),
+    "verify/spun": (),
     "verify/tension": (),
 }
 RATTLING: dict[str, tuple[str, ...]] = {

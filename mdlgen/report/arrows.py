@@ -10,6 +10,7 @@ import numpy as np
 from mdlgen.geometry.solids import Solid, arrow
 from mdlgen.model.frames import frame
 from mdlgen.model.tables import Floats, Model, PlanePart, RollerPart
+from mdlgen.report.over_time import words
 from mdlgen.units import PER_SECOND
 
 LENGTH, LEAST = 0.1, 0.35  # of the greatest arrow, in times the scene's diagonal; of the least, in its own
@@ -144,5 +145,6 @@ def _loads(model: Model, most: float) -> Iterator[Raw]:
         if size > 0.0:
             body, local = loads.body[mine], loads.local[mine]
             places = model.bodies.position[body] + np.einsum("nij,nj->ni", model.bodies.rotation[body], local)
-            says = f"a load of {size:.4g} N"
+            changing = [words(loads.profiles[k]) for k in loads.changing if k in loads.entry[mine]]
+            says = ", ".join([f"a load of {size:.4g} N", *changing])
             yield sheet.name, "load", places.mean(axis=0), force / size, says, size

@@ -55,7 +55,7 @@ def unseen(model: Model, of: Collection[str] | None = None) -> float:
             continue
         boxes = slice(sheet.first, sheet.first + sheet.count)
         weight += float(model.bodies.mass[boxes] @ free[boxes]) * max(sheet.size) / 10.0
-    return model.run.tolerance * weight * float(np.linalg.norm(model.gravity))
+    return model.run.tolerance * weight * float(np.linalg.norm(model.most_gravity))
 
 
 def made_by_nips(energy: Energy) -> str | None:

@@ -7,6 +7,7 @@ from typing import Annotated, Any, Literal
 from pydantic import BeforeValidator, Field, model_validator
 
 from mdlgen.spec.fields import ForceVector, MomentVector, Name, Point2
+from mdlgen.spec.over_time import WORDS, Profile
 from mdlgen.spec.quantities import quantity
 from mdlgen.spec.sheet import Edge
 from mdlgen.spec.strict import Strict, fail
@@ -39,6 +40,9 @@ class Load(OnSheet):
     )
     stress: Annotated[float, quantity("MPa")] | None = Field(
         default=None, description="tension on an edge along its outward normal, times width and thickness"
+    )
+    profile: Profile | None = Field(
+        default=None, description=f"what the load is multiplied by over time: {WORDS}; 1 where left out"
     )
 
     @model_validator(mode="after")

@@ -11,6 +11,7 @@ from pydantic_core import PydanticCustomError
 from mdlgen.spec.action import OnSheet
 from mdlgen.spec.between import known
 from mdlgen.spec.nip import names_of as rollers_of
+from mdlgen.spec.over_time import begun
 from mdlgen.spec.passing import as_written, check_passing, check_stream, passing_sheets
 from mdlgen.spec.pile import names_of as sheets_of
 from mdlgen.spec.reacting import checks as reacting
@@ -33,10 +34,12 @@ def checks(scene: Scene) -> Iterator[Callable[[], None]]:
             yield partial(_on_sheet, scene, item, (kind, key))
     for name in scene.rollers:
         yield partial(_check_clutch, scene, name)
+        yield partial(_check_start, scene, name)
     for name in scene.shafts:
         yield partial(check_shaft, scene, name)
     for name in scene.nips:
         yield partial(_check_nip, scene, name)
+    yield partial(_check_weight, scene)
     for name in scene.piles:
         yield partial(_check_pile, scene, name)
     for name in scene.streams:
@@ -87,6 +90,14 @@ def _check_nip(scene: Scene, name: str) -> None:
         if isinstance(given, dict) and given.get("share", "width") != "width":
             message = "a nip is in balance with share: width only; leave share out"
             raise fail(message, (*path, side, "contact", "share"))
+
+
+def _check_weight(scene: Scene) -> None:
+    if scene.nips and begun(scene.gravity_profile) != 1.0:
+        raise fail(
+            "the press of a nip follows from its force and from gravity as given; begin with a factor of 1",
+            ("gravity_profile", 0, 1),
+        )
 
 
 def _check_pile(scene: Scene, name: str) -> None:
@@ -156,6 +167,27 @@ def _check_clutch(scene: Scene, name: str) -> None:
             raise fail(
                 f"roller {name}: {word} acts by speed, and a static analysis has none; leave it out",
                 ("rollers", name, key),
+            )
+
+
+def _check_start(scene: Scene, name: str) -> None:
+    """Speeds that a roller begins with, and its arm where that carries a mesh."""
+    roller, path = scene.rollers[name], ("rollers", name)
+    speeds: dict[tuple[str, ...], float] = {("spin",): roller.spin}
+    if roller.press is not None:
+        speeds["press", "start_speed"] = roller.press.start_speed
+    if roller.arm is not None:
+        speeds["arm", "start_speed"] = roller.arm.start_speed
+    for place, speed in speeds.items():
+        if speed != 0.0 and scene.run.analysis == "static":
+            raise fail("a static analysis has no speeds; leave it out", (*path, *place))
+    if roller.arm is not None and roller.arm.start != 0.0:
+        on = [key for key, mesh in scene.meshes.items() if mesh.on == name]
+        if on:
+            raise fail(
+                f"the mesh {on[0]} is on this roller, and is not turned with its arm; give the center of "
+                "the roller where it begins, and leave start out",
+                (*path, "arm", "start"),
             )
 
 

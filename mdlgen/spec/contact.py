@@ -112,9 +112,9 @@ class Contact(Strict):
     smoothing: SpeedScale | None = Field(
         default=None,
         description="slip speed over which friction rises from 0 to its full value, and speed of approach "
-        "over which damping does; where left out 1 % of the fastest driven surface, or of the fastest sheet "
-        "at the start, but 1 mm/s at least and 20 mm/s at most; 1 mm/s where the contact has a sheet on a "
-        "sheet",
+        "over which damping does; where left out 1 % of the fastest surface of a roller, or of the fastest "
+        "sheet at the start, but 1 mm/s at least and 20 mm/s at most; 1 mm/s where the contact has a sheet "
+        "on a sheet",
     )
     rolling_resistance: Share = Field(
         default=0.0,

@@ -12,6 +12,7 @@ from pydantic_core import PydanticCustomError
 from mdlgen.rubber.contact import WIDEST, Squeezed, loaded
 from mdlgen.rubber.layer import Layer
 from mdlgen.spec.machine import Roller
+from mdlgen.spec.over_time import begun
 from mdlgen.spec.quantities import following
 from mdlgen.spec.strict import fail, fail_all
 
@@ -165,7 +166,8 @@ def _pressing(scene: Scene, roller: Roller) -> float:
     if press is None:
         return 0.0
     mass = roller.mass * (1.001 if press.carrier_mass is None else 1.0) + (press.carrier_mass or 0.0)
-    return press.preload + mass * sum(g * d for g, d in zip(scene.gravity, press.direction, strict=True))
+    pull = sum(g * d for g, d in zip(scene.gravity, press.direction, strict=True))
+    return press.preload + mass * begun(scene.gravity_profile) * pull
 
 
 def _facing(scene: Scene, name: str, pairs: Iterable[Pair]) -> str:

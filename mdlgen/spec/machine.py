@@ -9,7 +9,9 @@ from pydantic import BeforeValidator, ConfigDict, Field, model_validator
 
 from mdlgen.spec.cover import Cover
 from mdlgen.spec.fields import (
+    Angle,
     Direction,
+    Length,
     LengthOrZero,
     Mass,
     Position,
@@ -135,6 +137,14 @@ class Press(Strict):
         "either way",
     )
     damping_ratio: Ratio = Field(default=0.05, description="relative damping of spring and roller or plate")
+    start: Length | None = Field(
+        default=None,
+        description="where the roller or plate begins, along `direction` from where its spring has its "
+        "`preload`: 0 mm is there, -2 mm lifts a roller by 2 mm. Where left out it begins in balance",
+    )
+    start_speed: Annotated[float, quantity("mm/s")] = Field(
+        default=default("0 mm/s"), description="speed along `direction` with which it begins"
+    )
     carrier_mass: Mass | None = Field(
         default=None,
         description="mass of the slide between spring and roller; a thousandth of the roller's where left "
@@ -145,8 +155,8 @@ class Press(Strict):
 class Arm(Strict):
     """A rigid arm that pivots about an axis parallel to the roller's and carries it at its end.
 
-    Angles and torques are about the direction of the roller's axis (right-hand rule), from where the arm is
-    as the run begins. A drive turns the roller against the arm, as a motor that sits on the arm does.
+    Angles and torques are about the direction of the roller's axis (right-hand rule), from where the roller
+    has its `center` as given. A drive turns the roller against the arm, as a motor that sits on the arm does.
     """
 
     pivot: Position = Field(description="a point of the axis that the arm turns about, which is fixed")
@@ -161,11 +171,18 @@ class Arm(Strict):
         "from the pivot to the roller",
     )
     torque: Annotated[float, quantity("N*mm")] = Field(
-        default=default("0 N*mm"), description="torque of its spring as the run begins"
+        default=default("0 N*mm"), description="torque of its spring where `start` is 0 deg"
     )
     stiffness: Torsion = Field(default=default("0 N*mm/rad"), description="stiffness of its spring")
     damping: Annotated[float, quantity("N*mm*ms/rad", 0.0)] = Field(
         default=default("0 N*mm*ms/rad"), description="damping of its pivot"
+    )
+    start: Angle = Field(
+        default=default("0 deg"),
+        description="angle at which the arm begins, from where the roller has its `center` as given",
+    )
+    start_speed: AngularSpeed = Field(
+        default=default("0 rad/s"), description="angular speed with which the arm begins"
     )
 
     @property
@@ -188,6 +205,11 @@ class Roller(MachinePart):
     mass: Mass = Field(description="mass m; the inertia is that of a solid cylinder")
     drive: Drive | None = Field(
         default=None, description="prescribed rotation; without it the roller turns freely"
+    )
+    spin: AngularSpeed = Field(
+        default=default("0 rad/s"),
+        description="angular speed about the axis (right-hand rule) with which a roller without a drive "
+        "begins",
     )
     one_way: OneWay | None = Field(
         default=None, description="a one-way clutch between the roller and its drive, or ground without one"
@@ -233,6 +255,16 @@ class Roller(MachinePart):
                 f"{self.cover.thickness:g} mm is not below the radius, {self.radius:g} mm, which is that of "
                 "the cover's outside",
                 within=("cover", "thickness"),
+            )
+        return self
+
+    @model_validator(mode="after")
+    def _begins(self) -> Roller:
+        if self.drive is not None and self.spin != 0.0:
+            raise fail(
+                "a roller with a drive begins with the speed of its drive; leave spin out, or write the "
+                "drive as a profile that begins with that speed",
+                within=("spin",),
             )
         return self
 
@@ -329,6 +361,12 @@ class Plane(MovingPart):
                 "the direction lies in the plate's own face, or less than 3 degrees off it, where it presses "
                 "nothing; give it a part along the normal",
                 within=("press", "direction"),
+            )
+        if self.press.start is not None and abs(self.press.start) >= self.press.free_length:
+            raise fail(
+                f"{self.press.start:g} mm is beyond the way of the plate, its free_length of "
+                f"{self.press.free_length:g} mm either way",
+                within=("press", "start"),
             )
         return self
 

@@ -37,6 +37,7 @@ from mdlgen.spec.machine_part import MachinePart, classes_of
 from mdlgen.spec.material import Material
 from mdlgen.spec.mesh import Mesh
 from mdlgen.spec.nip import Nip
+from mdlgen.spec.over_time import WORDS, Profile
 from mdlgen.spec.parameter import (
     MOST as MOST_PARAMETERS,
 )
@@ -89,6 +90,9 @@ class Scene(Strict):
     gravity: Acceleration = Field(
         default=(default("0 m/s^2"), default("0 m/s^2"), default("-9.81 m/s^2")),
         description="acceleration of gravity, global axes",
+    )
+    gravity_profile: Profile | None = Field(
+        default=None, description=f"what gravity is multiplied by over time: {WORDS}; 1 where left out"
     )
     parameters: dict[Name, ParameterValue] = Field(
         default_factory=dict,

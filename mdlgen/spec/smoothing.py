@@ -27,7 +27,7 @@ class Speeds(NamedTuple):
 def speeds(scene: Scene, pairs: Iterable[tuple[int, str, str]] | None = None) -> tuple[Speeds, ...]:
     """Those of each contact: its own, or what follows from the scene. `pairs` are its contact_pairs.
 
-    A smoothing that is left out is 1 % of the fastest driven surface, or of the fastest sheet as the run
+    A smoothing that is left out is 1 % of the fastest surface of a roller, or of the fastest sheet as the run
     begins, but at least 1 mm/s and at most 20 mm/s. A contact in which a sheet meets a sheet has 1 mm/s:
     there slow creep is what counts. A stiction velocity that follows is no more than a friction velocity
     given.
@@ -65,10 +65,10 @@ def _with_two_sheets(scene: Scene, pairs: Iterable[tuple[int, str, str]]) -> set
 
 
 def surface_speed(roller: Roller) -> float:
-    """How fast the surface of a driven roller moves at most [mm/ms], 0 without a drive."""
+    """How fast the surface of a driven roller moves at most [mm/ms]; without a drive, as the run begins."""
     drive = roller.drive
     if drive is None:
-        return 0.0
+        return abs(roller.spin) * _reach(roller)
     return _fastest_of(drive) * _reach(roller)
 
 

@@ -20,6 +20,7 @@ from mdlgen.mechanics.curve import POINT
 from mdlgen.mechanics.frame import Box, Cylinder, Frame, Law, Motion, Plate, Vector
 from mdlgen.mechanics.guide import BOTH, INSIDE, OUTSIDE, upper
 from mdlgen.mechanics.mesh_tables import HEAD, Meshes
+from mdlgen.mechanics.over_time import ACTS, LAW, Changing
 from mdlgen.mechanics.overlap import OVERLAP
 from mdlgen.mechanics.plastic import HINGE
 from mdlgen.mechanics.records import LOAD
@@ -65,6 +66,7 @@ def pair_force(bodies: np.ndarray, pair: np.void, shapes: Shapes, motion: Motion
         held=np.zeros(0, HELD),
         hinges=np.zeros(0, HINGE),
         corners=np.zeros(0, CORNER),
+        changes=Changing(np.zeros(0, LAW), np.zeros(0, ACTS)),
         shapes=shapes,
     )
     mid = Midpoint(

@@ -18,6 +18,7 @@ from mdlgen.mechanics.bristle import BRISTLE, HELD
 from mdlgen.mechanics.corner import CORNER
 from mdlgen.mechanics.curve import POINT
 from mdlgen.mechanics.frame import Motion
+from mdlgen.mechanics.over_time import ACTS, LAW, Changing
 from mdlgen.mechanics.overlap import OVERLAP
 from mdlgen.mechanics.plastic import HINGE
 from mdlgen.mechanics.point import OUT
@@ -92,6 +93,7 @@ def _tables(bodies: np.ndarray, pairs: np.ndarray, shapes: Shapes) -> Tables:
         held=np.zeros(0, HELD),
         hinges=np.zeros(0, HINGE),
         corners=np.zeros(0, CORNER),
+        changes=Changing(np.zeros(0, LAW), np.zeros(0, ACTS)),
         shapes=shapes,
     )
 

@@ -342,10 +342,18 @@ PARTS: dict[str, dict[str, tuple[str, ...]]] = {
     },
     "support.mdl.j2": {"in a box, on an edge between two": SUPPORTS},
     "load.mdl.j2": {
+        "over time": (
+            *LOADS,
+            "loads.0.profile=[[0 ms,0],[5 ms,1],[9 ms,-0.5]]",
+            "loads.2.profile=[[0 ms,0],[5 ms,1]]",
+        ),
         "on edges and at points": LOADS,
         "on an edge with lengths of its own": (*UNLIKE, *LOADS[:1]),
     },
-    "roller.mdl.j2": {"each kind": (ROLLERS,)},
+    "roller.mdl.j2": {
+        "each kind": (ROLLERS,),
+        "with a spin": (ONE_OF_EACH[0], "rollers.under.spin=10 rad/s"),
+    },
     "plane.mdl.j2": {"level, with a normal of its own": (PLANES,), "pressed": (PLATES_ON_SPRINGS,)},
     "guide.mdl.j2": {"straight and bent": (GUIDES,)},
     "mesh.mdl.j2": {"fixed, on a driven roller, on a pressed one": (ROLLERS, MESHES)},

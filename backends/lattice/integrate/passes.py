@@ -61,6 +61,7 @@ from mdlgen.backends.lattice.kernels.tuning import (
 )
 from mdlgen.errors import SpecError
 from mdlgen.model.overlaps.unheld import Unheld
+from mdlgen.model.starts import fastest_start
 from mdlgen.model.tables import Model
 from mdlgen.results.result import Result
 from mdlgen.runs.checkpoint import Checkpointer
@@ -135,15 +136,15 @@ def accuracy(model: Model) -> float:
 
 
 def speed(model: Model) -> float:
-    """What velocities are measured by at first [mm/ms]: drives and initial velocities; a hundredth of a sheet
-    in the run, and a tenth where nothing else is known."""
+    """What velocities are measured by at first [mm/ms]: drives, initial velocities and spins; a hundredth of
+    a sheet in the run, and a tenth where nothing else is known."""
     drives = [abs(r.speed) * r.radius for r in model.rollers if r.speed is not None]
     starts = [float(np.linalg.norm(s.velocity)) for s in model.sheets]
     own = [max(s.size) / 10 / model.run.duration for s in model.sheets]
     radius = {r.name: r.radius for r in model.rollers}
     orders = [order for rule in model.reactions.rules for order in rule.orders if order.kind == "speed"]
     drives += [abs(order.value) * radius[order.name] for order in orders]
-    known = max(*drives, *starts, 0.0)
+    known = max(*drives, *starts, fastest_start(model), 0.0)
     return max(known, max(own, default=0.0) * (0.1 if known > 0.0 else 1.0))
 
 

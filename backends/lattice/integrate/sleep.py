@@ -19,7 +19,8 @@ Sheets that have not come yet, or have left, are `gone`: nothing meets them, and
 they come and leave (see passing).
 
 Sheets with air on them do not sleep, since a film closes slowly. Nor does an island of which a sheet hangs on
-something, or touches a part that moves, nor any sheet of a scene where sheets stick on other parts.
+something, or touches a part that moves, nor any sheet of a scene where sheets stick on other parts, or where
+loads or gravity change over time.
 """
 
 from __future__ import annotations
@@ -94,7 +95,7 @@ class Sleep:
         self._may = np.zeros(sheets, bool)
         self._air = model.contacts.air_viscosity > 0.0
         sleeps = sleeps and model.run.sleep and not len(system.bristles)
-        sleeps = sleeps and not len(system.yields.hinges)
+        sleeps = sleeps and not len(system.yields.hinges) and not len(system.changes.laws)
         if sheets and sleeps and not self._air.any():
             loose = work.free.loose if self.system is system else momentum.empty(system).loose
             self._may[: len(loose)] = loose

@@ -28,6 +28,7 @@ from mdlgen.backends.lattice.kernels.state import (
 )
 from mdlgen.mechanics.frame import Motion
 from mdlgen.model.passing import at_start, passing
+from mdlgen.model.starts import begun_rates
 from mdlgen.model.tables import Floats, Ints, Model
 
 
@@ -52,6 +53,10 @@ def start(model: Model, system: System) -> tuple[State, Midpoint, Matrix]:
         if roller.motor and roller.axle is not None:
             at = system.bodies["spin"][roller.body]
             state.s[at] = roller.axle.begins_behind(float(roller.prescribed(0.0)))
+    for begun in begun_rates(model):
+        at = system.bodies[begun.of][begun.body]
+        if at >= 0:  # else it is left out
+            state.vb[at] = state.ub[at] = begun.rate
     return state, mid, matrix
 
 

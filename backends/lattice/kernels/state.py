@@ -10,6 +10,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from mdlgen.mechanics.frame import Motion
+from mdlgen.mechanics.over_time import Changing
 from mdlgen.mechanics.overlap import MOST_CORNERS
 from mdlgen.mechanics.turning import TURNING
 
@@ -18,7 +19,8 @@ Ints = np.ndarray
 
 
 class Tables(NamedTuple):
-    """What a run is of: records as in lattice.arrays. Steps change none but pairs that are searched."""
+    """What a run is of: records as in lattice.arrays. Steps change none but pairs that are searched, and what
+    `changes` of loads and gravity."""
 
     bodies: np.ndarray
     joints: np.ndarray
@@ -38,6 +40,7 @@ class Tables(NamedTuple):
     hinges: np.ndarray  # joints that yield, mechanics.plastic.HINGE
     shapes: Any  # mechanics.shapes.Shapes
     corners: np.ndarray  # mechanics.corner.CORNER
+    changes: Changing  # loads and gravity over time, which each step sets
 
 
 SHEET = 2  # column of Tables.runs

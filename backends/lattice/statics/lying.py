@@ -77,7 +77,7 @@ def _hold(model: Model, sheet: SheetPart, load: float) -> Hold | None:
             continue
         plane = next(part for part in model.planes if part.name == table.part_b[row])
         normal = model.bodies.rotation[plane.body][:, 2]
-        if plane.press is not None or float(normal @ model.gravity) >= 0.0:
+        if plane.press is not None or float(normal @ model.begun_gravity) >= 0.0:
             continue
         boxes = places[sheet.first : sheet.first + sheet.count] - places[plane.body]
         own = boxes @ model.bodies.rotation[plane.body]

@@ -35,6 +35,8 @@ def find(model: Model, system: System) -> Mirror | None:
         return None  # a field that scatters has no image
     if any(roller.axle is not None or roller.leader >= 0 for roller in model.rollers):
         return None  # a motor, a limiter or a shaft may have parts on both sides
+    if model.changes:
+        return None  # loads on both sides may change by unlike factors
     for axis in (1, 0):
         normal = model.sheets[0].rotation[:, axis]
         mirror = _plane(model, normal, float(normal @ model.sheets[0].center))

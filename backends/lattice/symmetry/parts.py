@@ -11,7 +11,7 @@ import numpy as np
 
 from mdlgen.backends.lattice.kernels.tuning import SAME
 from mdlgen.backends.lattice.symmetry.mirror import Mirror
-from mdlgen.model.tables import GuidePart, MachinePart, Model, PlanePart, RollerPart
+from mdlgen.model.tables import ArmPart, GuidePart, MachinePart, Model, PlanePart, RollerPart
 
 
 class _Kind(NamedTuple):
@@ -73,10 +73,16 @@ def _turning(part: RollerPart, way: float, mirror: Mirror | None) -> tuple[Any, 
         "speed": part.speed if part.speed is None else way * part.speed,
         "profile": part.profile if part.profile is None else part.profile * (1.0, way),
         "one_way": clutch,
+        "spin": way * part.spin,
         "press": press and _values_of(press, {}),
-        "arm": arm and (_rounded(arm.center), *_values_of(replace(arm, torque=way * arm.torque), {})),
+        "arm": arm and (_rounded(arm.center), *_values_of(_seen_arm(arm, way), {})),
     }
     return _values_of(part, own)
+
+
+def _seen_arm(arm: ArmPart, way: float) -> ArmPart:
+    """An arm with its torque, angle and speed in the sense of an axis that is turned by `way`."""
+    return replace(arm, torque=way * arm.torque, angle=way * arm.angle, speed=way * arm.speed)
 
 
 def _half_roller(mirror: Mirror, roller: RollerPart) -> float:

@@ -49,8 +49,12 @@ def add_bodies(deck: Deck, model: Model) -> None:
 
 
 def _velocities(model: Model) -> dict[int, tuple[str, ...]]:
-    """Initial velocities of the free boxes of sheets that move, global axes."""
+    """Initial velocities of the free boxes of sheets that move, and of rollers that spin, global axes."""
     table, found = model.bodies, {}
+    for roller in model.rollers:
+        if roller.spin != 0.0:
+            six = (0.0, 0.0, 0.0, *(roller.spin * roller.axis).tolist())
+            found[roller.body] = tuple(thousandfold(v) for v in six)
     for sheet in model.sheets:
         if np.any(sheet.velocity) or np.any(sheet.spin):
             for k in range(sheet.first, sheet.first + sheet.count):

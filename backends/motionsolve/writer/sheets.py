@@ -5,6 +5,7 @@ from __future__ import annotations
 from mdlgen.altair.curves import Written, straight_points, written
 from mdlgen.backends.motionsolve.writer.axes import cosines
 from mdlgen.backends.motionsolve.writer.ids import body_id
+from mdlgen.backends.motionsolve.writer.over_time import load_factor
 from mdlgen.backends.motionsolve.writer.requests import add_request
 from mdlgen.backends.motionsolve.writer.rows import (
     Bushing,
@@ -127,4 +128,7 @@ def add_loads(deck: Deck, model: Model) -> None:
         marker = deck.marker(f"{name}.i", f"{label}-Marker I", body_id(body), at[row])
         fx, fy, fz = numbers(loads.force[row])
         tx, ty, tz = numbers(loads.moment[row])
+        if loads.entry[row] in loads.changing:
+            factor = load_factor(loads.profiles[loads.entry[row]])
+            fx, fy, fz, tx, ty, tz = (f"{v}*({factor})" for v in (fx, fy, fz, tx, ty, tz))
         deck.loads.append(Load(name, label, row + 1, marker, (fx, fy, fz), (tx, ty, tz)))

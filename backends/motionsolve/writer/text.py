@@ -11,6 +11,7 @@ from mdlgen.altair.poisson import refuse_poisson
 from mdlgen.altair.reactions import refuse_rules
 from mdlgen.altair.rolling import refuse_rolling
 from mdlgen.altair.springs import refuse_compressed
+from mdlgen.altair.starts import refuse_starts
 from mdlgen.altair.streams import refuse_passing
 from mdlgen.backends.motionsolve.writer import gate
 from mdlgen.backends.motionsolve.writer.banner import banner
@@ -45,6 +46,7 @@ def check(model: Model) -> None:
     refuse_rolling(model, "MotionSolve deck")
     refuse_air(model, "MotionSolve deck")
     refuse_poisson(model, "MotionSolve deck")
+    refuse_starts(model, "MotionSolve deck")
 
 
 def emit(model: Model) -> str:

@@ -87,9 +87,12 @@ UNVERIFIED = (
     ),
     Unverified(
         "a line of more than 528 characters, the longest that was seen",
-        "speeds with many corners, and clutches; no page has a limit",
+        "speeds with many corners, clutches, and loads over time; no page has a limit",
         "the end of the line in the panel of a motion or a force",
-        lambda scene: any(r.corners > _LONG or r.free_sense for r in scene.rollers),
+        lambda scene: (
+            any(r.corners > _LONG or r.free_sense for r in scene.rollers)
+            or any(load.changes for load in scene.loads)
+        ),
     ),
     Unverified(
         "`*SetContact` of `POISSON`",
@@ -179,7 +182,9 @@ DOCUMENTED = (
         "`*DeformableSurface`", ("deformablesurface_r.htm",), lambda s: any(v.surface for v in s.sheets)
     ),
     Documented(
-        "velocity markers of `*Body`", ("body_r.htm",), lambda scene: any(s.moving for s in scene.sheets)
+        "velocity markers of `*Body`",
+        ("body_r.htm",),
+        lambda scene: any(s.moving for s in scene.sheets) or any(r.spins for r in scene.rollers),
     ),
     Documented(
         "`*ActionOnlyForce( .., TRANS, .. )`, `*SetForce` with `LIN` three times (seen with `ROT`, and with "

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Mapping
 
 import numpy as np
@@ -13,6 +14,8 @@ from mdlgen.backends.motionview.writer.sheet_rows import LoadPart, LoadView
 from mdlgen.backends.motionview.writer.sheets import frame_of
 from mdlgen.backends.motionview.writer.units import number
 from mdlgen.model.tables import Model, SheetPart
+
+_VALUE = re.compile(r"ds_\w+\.real_\w+\.value")
 
 
 def load_views(model: Model, given: Mapping[str, list[Value]]) -> list[LoadView]:
@@ -32,12 +35,33 @@ def load_views(model: Model, given: Mapping[str, list[Value]]) -> list[LoadView]
             components = [f"ds_{name}.real_{axis}_{a}.value{share}" for a in "xyz"]
             if "stress" in members:
                 components = [f.replace("$stress", f"ds_{name}.real_stress.value") for f in forces]
+            if entry in table.changing:
+                factor = _factor(name, len(table.profiles[entry]))
+                components = [f"{_of_solver(f)}*({factor})" for f in components]
             label = f"Load {entry} on {model.bodies.label[body]}"
             body_name = f"b_{model.bodies.name[body]}"
             x, y = (p.replace("$at_", f"ds_{name}.real_") for p in place)
             parts.append(LoadPart(f"frc_{row}", label, body_name, x, y, frame_of(sheet, body), components))
-        views.append(LoadView(name, f"Load {entry} on {sheet.name}", sheet.name, given[name], moment, parts))
+        label, changes = f"Load {entry} on {sheet.name}", entry in table.changing
+        views.append(LoadView(name, label, sheet.name, given[name], moment, changes, parts))
     return views
+
+
+def _factor(name: str, corners: int) -> str:
+    """The factor of a load over time, as a solver has it: the sum of what each piece of a profile adds."""
+    parts = [f"{{ds_{name}.real_c_0.value}}"]
+    for k in range(1, corners):
+        times, factors = (
+            [f"{{ds_{name}.real_{member}_{j}.value}}" for j in (k - 1, k)] for member in ("t", "c")
+        )
+        share = f"MAX(0,1-MAX(0,({times[1]}-TIME)/({times[1]}-{times[0]})))"
+        parts.append(f"({factors[1]}-({factors[0]}))*{share}")
+    return "+".join(parts)
+
+
+def _of_solver(formula: str) -> str:
+    """A formula over values of a text as a solver has it: values are written into it as numbers."""
+    return _VALUE.sub(r"({\g<0>})", formula)
 
 
 def _at(boxes: int) -> tuple[tuple[str, str], str, list[str]]:

@@ -224,4 +224,5 @@ class LoadView(NamedTuple):
     sheet: str
     given: list[Value]
     moment: bool
+    changes: bool  # its components are expressions of the solver
     parts: list[LoadPart]

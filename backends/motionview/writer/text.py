@@ -13,6 +13,7 @@ from mdlgen.altair.poisson import refuse_poisson
 from mdlgen.altair.reactions import refuse_rules
 from mdlgen.altair.rolling import refuse_rolling
 from mdlgen.altair.springs import refuse_compressed
+from mdlgen.altair.starts import refuse_starts
 from mdlgen.altair.streams import refuse_passing
 from mdlgen.backends.motionview.writer import gate
 from mdlgen.backends.motionview.writer.banner import banner
@@ -42,6 +43,7 @@ def check(model: Model) -> None:
     check_sheets(model)
     refuse_compressed(model, "MotionView text")
     refuse_rolling(model, "MotionView text")
+    refuse_starts(model, "MotionView text")
 
 
 def check_sheets(model: Model) -> None:

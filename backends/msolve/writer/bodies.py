@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import Any
 
-from mdlgen.backends.msolve.writer.units import axes, per_thousand, row, same
+from mdlgen.backends.msolve.writer.units import Row, axes, per_thousand, row, same, thousandfold
 from mdlgen.model.parts.guide import Facet
 from mdlgen.model.tables import Model, PlanePart, Press, RollerPart
 
@@ -38,3 +38,12 @@ def press(part: RollerPart | PlanePart, spring: Press) -> Table:
 def box(facet: Facet) -> tuple[Any, ...]:
     """Place, axes and lengths of a box."""
     return row(facet.center), axes(facet.rotation), row(list(facet.lengths))
+
+
+def spins(model: Model) -> dict[str, Row]:
+    """Angular velocity [rad/s] along global axes that a roller begins with, of those that have one."""
+    return {
+        roller.name: row(roller.spin * roller.axis, thousandfold)
+        for roller in model.rollers
+        if roller.spin != 0.0
+    }

@@ -8,7 +8,7 @@ import numpy as np
 
 from mdlgen.altair.classes import box_classes
 from mdlgen.altair.curves import straight_points, written
-from mdlgen.backends.msolve.writer.units import axes, per_thousand, row, same, thousandfold
+from mdlgen.backends.msolve.writer.units import Row, axes, per_thousand, row, same, thousandfold
 from mdlgen.model.lowering.joints import Joints, find_joints
 from mdlgen.model.tables import CLAMP, GROUND, JOINT_X, JOINT_Y, SUPPORT, Floats, Ints, Model, SheetPart
 
@@ -203,6 +203,16 @@ def loads(model: Model) -> list[tuple[Any, ...]]:
         (f"frc_{k}", bodies.name[body], row(places[k]), row(table.force[k]), row(table.moment[k]))
         for k, body in enumerate(table.body.tolist())
     ]
+
+
+def load_factors(model: Model) -> dict[str, list[Row]]:
+    """Corners [s, 1] of the factor over time of each load that has one."""
+    table = model.loads
+    return {
+        f"frc_{k}": [[per_thousand(time), same(factor)] for time, factor in table.profiles[entry].tolist()]
+        for k, entry in enumerate(table.entry.tolist())
+        if entry in table.changing
+    }
 
 
 def probes(model: Model) -> Table:

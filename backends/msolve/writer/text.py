@@ -13,11 +13,13 @@ from mdlgen.altair.poisson import refuse_poisson
 from mdlgen.altair.reactions import refuse_rules
 from mdlgen.altair.rolling import refuse_rolling
 from mdlgen.altair.springs import refuse_compressed
+from mdlgen.altair.starts import refuse_starts
 from mdlgen.altair.statics import static_method
 from mdlgen.altair.streams import refuse_passing
 from mdlgen.backends.msolve.environment import environment
 from mdlgen.backends.msolve.writer import contacts, gate, sheets
 from mdlgen.backends.msolve.writer.banner import banner
+from mdlgen.backends.msolve.writer.bodies import spins
 from mdlgen.backends.msolve.writer.parts.kinds import MACHINE, WRITTEN
 from mdlgen.backends.msolve.writer.units import acceleration, per_thousand, row
 from mdlgen.errors import SpecError
@@ -52,6 +54,7 @@ def check(model: Model) -> None:
     refuse_rolling(model, who)
     refuse_air(model, who)
     refuse_poisson(model, who)
+    refuse_starts(model, who)
 
 
 def tables(model: Model) -> dict[str, Any]:
@@ -68,8 +71,10 @@ def tables(model: Model) -> dict[str, Any]:
             of.variable: {part.name: of.kind.table(model, part) for part in model.parts_of(of.part)}
             for of in MACHINE
         },
+        "SPINS": spins(model),
         "SUPPORTS": sheets.supports(model),
         "LOADS": sheets.loads(model),
+        "FACTORS": sheets.load_factors(model),
         "PROBES": sheets.probes(model),
         "CONTACTS": contacts.contacts(model),
         "FORCES": contacts.forces(model),

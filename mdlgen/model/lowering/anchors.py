@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from mdlgen.model import grid
+from mdlgen.model.over_time import corners
 from mdlgen.model.tables import (
     Anchor,
     Loads,
@@ -55,6 +56,7 @@ def lower_loads(scene: Scene, sheets: tuple[SheetPart, ...]) -> Loads:
         for body, local, share in targets:
             rows.append((body, local, sheet.rotation @ force * share, sheet.rotation @ moment * share))
             entries.append(entry)
+    profiles = [corners(load.profile) for load in scene.loads]
     count = len(rows)
     body, local, force, moment = [list(c) for c in zip(*rows, strict=True)] if rows else ([], [], [], [])
     return Loads(
@@ -64,6 +66,7 @@ def lower_loads(scene: Scene, sheets: tuple[SheetPart, ...]) -> Loads:
         moment=np.array(moment, dtype=float).reshape(count, 3),
         entry=np.array(entries, dtype=np.int64),
         edge=tuple(load.edge or "" for load in scene.loads),
+        profiles=tuple(profiles) if any(len(profile) for profile in profiles) else (),
     )
 
 

@@ -140,7 +140,11 @@ def _drives(touched: list[tuple[SheetPart, MachinePart]], run: RunSettings) -> _
     """Of the driven rollers among the parts that a sheet, or one that it is linked with, touches."""
     if run.analysis == "static":
         return _Drives([], 0.0)
-    driven = [(own, part) for own, part in touched if isinstance(part, RollerPart) and part.speed]
+    driven = [
+        (own, part if part.speed else replace(part, speed=part.spin))
+        for own, part in touched
+        if isinstance(part, RollerPart) and (part.speed or part.spin)
+    ]
     corners = [part.corners[:, 0] for _, part in driven]
     stations = np.concatenate([np.linspace(0.0, run.duration, _STATIONS), *corners]).clip(0.0, run.duration)
     times = np.array(sorted(set(stations.tolist())))

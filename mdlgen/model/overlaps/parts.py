@@ -160,7 +160,7 @@ class Overlaps:
         roller, part, _ = pair
         model, still = self._model, np.zeros(3)
         start = model.bodies.position[roller.body]
-        weight = model.gravity
+        weight = model.begun_gravity
         if roller.press is not None:
             spring = roller.press
             mass = roller.loaded_mass + spring.carrier_mass

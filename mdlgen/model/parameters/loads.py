@@ -29,4 +29,8 @@ def load_rows(scene: Scene) -> list[Parameter]:
                     label = f"{word.capitalize()} {way} {axis} of the sheet ({unit.replace('*', ' ')})"
                     row = Parameter(name, f"{letter}_{axis}", label, given[k], unit, (*base, word, k))
                     rows.append(row)
+        for k, (time, factor) in enumerate(load.profile or ()):
+            path = (*base, "profile", k)
+            rows.append(Parameter(name, f"t_{k}", f"Time of corner {k}", time, "ms", (*path, 0)))
+            rows.append(Parameter(name, f"c_{k}", f"Factor at corner {k}", factor, "1", (*path, 1)))
     return rows

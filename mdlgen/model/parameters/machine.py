@@ -25,6 +25,7 @@ def spring_rows(name: str, press: Press, base: tuple[str, str]) -> list[Paramete
     ]
 
 
-def start_row(name: str, start: float) -> Parameter:
-    label = "Start along the slide in static equilibrium, as written"
+def start_row(name: str, start: float, press: Press) -> Parameter:
+    where = "in static equilibrium" if press.start is None else "where the scene has it"
+    label = f"Start along the slide {where}, as written"
     return Parameter(name, "start", label, start, "mm", None)

@@ -47,6 +47,8 @@ def held(
     spec = roller.press
     if spec is None or roller.rim is not None or spec.stiffness == 0.0:
         return None
+    if spec.start is not None or scene.gravity_profile is not None:
+        return None
     if any(mesh.on == name for mesh in scene.meshes.values()):
         return None
     acts, first, way = [], "", math.inf

@@ -15,7 +15,7 @@ from mdlgen.model.moved import carries, lower_motion, moves, swept, watched
 from mdlgen.model.parameters.machine import center_rows, spring_rows, start_row
 from mdlgen.model.parameters.names import NAMED_AXES
 from mdlgen.model.parts.kind import SLACK, BodyRow, Boxes, Drawn, Kind
-from mdlgen.model.parts.words import direction
+from mdlgen.model.parts.words import begins, direction
 from mdlgen.model.press.before import Before
 from mdlgen.model.press.faces import Face, faces_of_plate
 from mdlgen.model.press.springs import plate_press
@@ -156,7 +156,7 @@ class _Planes(Kind[PlanePart]):
         if plane.press.carrier_mass is not None:
             path = (*base, "press", "carrier_mass")
             rows.append(Parameter(name, "M_c", "Mass of its slide", plane.press.carrier_mass, "g", path))
-        return [*rows, start_row(name, starts[name][1])]
+        return [*rows, start_row(name, starts[name][1], plane.press)]
 
     def facts(self, model: Model, part: PlanePart) -> list[str]:
         facts = [" x ".join(f"{s:.4g}" for s in part.size) + f" mm, face towards {direction(part.normal)}"]
@@ -166,7 +166,7 @@ class _Planes(Kind[PlanePart]):
             return [*facts, "fixed"]
         spring = part.press
         force = f"pressed along {direction(spring.direction)} by {spring.preload:.4g} N"
-        return [*facts, f"{force}, {spring.stiffness:.4g} N/mm, {part.sliding_mass:.4g} g"]
+        return [*facts, f"{force}, {spring.stiffness:.4g} N/mm, {part.sliding_mass:.4g} g", *begins(spring)]
 
     def label(self, model: Model, part: PlanePart, seen: tuple[Floats, Floats]) -> Floats:
         """At a corner of its face, or what is nearest to that of where other parts are: in the middle are the

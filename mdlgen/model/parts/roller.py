@@ -14,11 +14,12 @@ from mdlgen.model.frames import frame
 from mdlgen.model.parameters.machine import center_rows, spring_rows, start_row
 from mdlgen.model.parameters.names import NAMED_AXES
 from mdlgen.model.parts.kind import SLACK, BodyRow, Boxes, Drawn, Kind
-from mdlgen.model.parts.words import direction
+from mdlgen.model.parts.words import begins, direction
 from mdlgen.model.press import balance
 from mdlgen.model.press.before import Before
 from mdlgen.model.press.springs import roller_press
 from mdlgen.model.rims import lower_rim
+from mdlgen.model.rotations import matrices
 from mdlgen.model.tables import (
     BOX_CYLINDER,
     CYLINDER_CYLINDER,
@@ -76,23 +77,25 @@ class _Rollers(Kind[RollerPart]):
                     axle=turns.axle,
                     leader=-1 if turns.leader is None else first + order[turns.leader],
                     ratio=turns.ratio,
+                    spin=roller.spin,
                 )
             )
         return tuple(parts)
 
     def body(self, part: RollerPart, rollers: tuple[RollerPart, ...]) -> BodyRow:
-        start = part.press.start * part.press.direction if part.press else np.zeros(3)
+        start = part.press.start * part.press.direction if part.press else _brought(part)
         inertia = np.array([part.inertia_transverse, part.inertia_transverse, part.inertia_axial])
         return BodyRow(part.center + start, frame(part.axis), part.mass, inertia, False, np.zeros(3))
 
     def bounds(
         self, part: RollerPart, bodies: Bodies, rollers: tuple[RollerPart, ...]
     ) -> tuple[Floats, Floats]:
-        """A pressed one may move by its radius along its slide."""
+        """A pressed one may move by its radius along its slide, and about its balance by as much as it begins
+        off that."""
         center = bodies.position[part.body]
         extent = np.abs(part.axis) * part.width / 2 + part.reach * np.sqrt(np.maximum(0, 1 - part.axis**2))
         if part.press is not None:
-            extent = extent + part.reach * np.abs(part.press.direction) + SLACK
+            extent = extent + (part.reach + 2.0 * part.press.off) * np.abs(part.press.direction) + SLACK
         if part.arm is not None:
             extent = extent + swing(part) + SLACK
         return center - extent, center + extent
@@ -114,7 +117,7 @@ class _Rollers(Kind[RollerPart]):
         if part.arm is not None:
             return position - swing(part) - margin, position + swing(part) + margin
         assert part.press is not None
-        way = part.reach * np.abs(part.press.direction) + margin
+        way = (part.reach + 2.0 * part.press.off) * np.abs(part.press.direction) + margin
         return position - way, position + way
 
     def inside(
@@ -190,6 +193,9 @@ class _Rollers(Kind[RollerPart]):
                 rows.append(
                     Parameter(name, f"w_{k}", f"Speed at corner {k} (rad/s)", speed, "rad/ms", (*at, 1))
                 )
+        if roller.spin != 0.0:
+            label = "Spin as the run begins (rad/s)"
+            rows.append(Parameter(name, "spin", label, roller.spin, "rad/ms", (*base, "spin")))
         if roller.one_way is not None:
             way, path = roller.one_way, (*base, "one_way")
             label = "Speed of its clutch at that torque (rad/s)"
@@ -212,7 +218,7 @@ class _Rollers(Kind[RollerPart]):
                     (*base, "press", "carrier_mass"),
                 ),
                 Parameter(name, "touch", "Touching position along the slide, as written", touch, "mm", None),
-                start_row(name, start),
+                start_row(name, start, roller.press),
             ]
         return rows
 
@@ -221,7 +227,7 @@ class _Rollers(Kind[RollerPart]):
         if part.axle is not None or part.leader >= 0:
             facts += _turned(part)
         elif part.speed is None:
-            facts.append("turns freely")
+            facts.append("turns freely" if part.spin == 0.0 else f"turns freely{_from(part.spin, 'rad/s')}")
         elif part.profile is not None:
             facts.append(f"driven by a profile, {PER_SECOND * part.speed:.4g} rad/s at most")
         else:
@@ -236,8 +242,12 @@ class _Rollers(Kind[RollerPart]):
                 f"pressed along {direction(spring.direction)} by {spring.preload:.4g} N where it touches, "
                 f"{spring.stiffness:.4g} N/mm"
             )
+            facts += begins(spring)
         if part.arm is not None:
             facts.append(f"on an arm of {part.arm.mass:.4g} g, spring torque {part.arm.torque:.4g} N mm")
+            if part.arm.angle != 0.0 or part.arm.speed != 0.0:
+                angle = f"its arm begins turned by {np.degrees(part.arm.angle):.4g} deg"
+                facts.append(angle + (_from(part.arm.speed, "rad/s") if part.arm.speed != 0.0 else ""))
         if part.rim is not None:
             facts.append(f"rim of {len(part.rim)} sectors")
         if part.cover is not None:
@@ -266,6 +276,10 @@ def _turned(part: RollerPart) -> list[str]:
     return found
 
 
+def _from(speed: float, unit: str) -> str:
+    return f", at {PER_SECOND * speed:.4g} {unit} as the run begins"
+
+
 def _drawn(roller: RollerPart) -> list[Drawn]:
     half, radius, rim = roller.width / 2, roller.radius, roller.rim
     if rim is None:
@@ -285,8 +299,18 @@ def _drawn(roller: RollerPart) -> list[Drawn]:
 
 
 def swing(roller: RollerPart) -> Floats:
-    """How far a roller on an arm may go either way, by its radius in any direction across its axis [mm]."""
-    return roller.reach * np.sqrt(np.maximum(0, 1 - roller.axis**2))
+    """How far a roller on an arm may go either way, by its radius in any direction across its axis, and by as
+    much again as its arm is turned at the start [mm]."""
+    begun = 2.0 * float(np.linalg.norm(_brought(roller)))
+    return (roller.reach + begun) * np.sqrt(np.maximum(0, 1 - roller.axis**2))
+
+
+def _brought(roller: RollerPart) -> Floats:
+    """How far its arm has brought a roller as the run begins [mm], (3,)."""
+    if roller.arm is None or roller.arm.angle == 0.0:
+        return np.zeros(3)
+    way = roller.center - roller.arm.pivot
+    return matrices(roller.arm.angle * roller.axis[None])[0] @ way - way
 
 
 def _arm(roller: Roller) -> ArmPart:
@@ -303,6 +327,8 @@ def _arm(roller: Roller) -> ArmPart:
         stiffness=spec.stiffness,
         damping=spec.damping,
         sprung=spec.sprung,
+        angle=spec.start,
+        speed=spec.start_speed,
     )
 
 

@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 from mdlgen.geometry.arrays import Floats
+from mdlgen.model.tables import Press
+from mdlgen.units import PER_SECOND
 
 
 def direction(way: Floats) -> str:
@@ -11,3 +13,13 @@ def direction(way: Floats) -> str:
         if abs(part) > 1.0 - 1e-9:
             return axis if part > 0.0 else f"-{axis}"
     return "[" + ", ".join(f"{round(part, 3) + 0.0:g}" for part in way.tolist()) + "]"
+
+
+def begins(press: Press) -> list[str]:
+    """Where and how fast what a spring presses begins, as far as it was given."""
+    found = []
+    if press.begins is not None:
+        found.append(f"begins {press.begins:.4g} mm from where its spring has that force")
+    if press.speed != 0.0:
+        found.append(f"begins at {PER_SECOND * press.speed:.4g} mm/s")
+    return found

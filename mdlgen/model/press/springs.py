@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from mdlgen.errors import SpecError
-from mdlgen.model import meshes
+from mdlgen.model import meshes, over_time
 from mdlgen.model.frames import frame
 from mdlgen.model.press import balance
 from mdlgen.model.press.before import Before
@@ -75,13 +75,18 @@ def roller_press(scene: Scene, name: str, before: Before) -> Press:
             forces.append(balance.sheet_contact(sheet, axis, own_radius, roller.width, stiffness, shared))
     touch = balance.touch_offset(center, axis, direction, own_radius, roller.width, others, faces)
     heavy = mass + sum(meshes.mass_of(mesh) for mesh in scene.meshes.values() if mesh.on == name)
-    weight = heavy * float(np.array(scene.gravity) @ direction)
+    weight = heavy * float(_begun_gravity(scene) @ direction)
 
     def spring(offset: float) -> float:
         return spec.preload - spec.stiffness * (offset - touch) + weight
 
     start = balance.equilibrium(center, direction, spring, forces, own_radius, touch)
     return _slide(spec, mass, carrier, touch, start)
+
+
+def _begun_gravity(scene: Scene) -> Floats:
+    """Gravity as the run begins [mm/ms^2], (3,)."""
+    return over_time.factor(over_time.corners(scene.gravity_profile), 0.0) * np.array(scene.gravity)
 
 
 def _wheel(roller: Roller, towards: Floats, contacts: Contacts, row: int) -> Wheel:
@@ -91,7 +96,8 @@ def _wheel(roller: Roller, towards: Floats, contacts: Contacts, row: int) -> Whe
     return Wheel(np.array(roller.center), np.array(roller.axis), radius, roller.width, stiffness)
 
 
-def _slide(spec: PressSpec, mass: float, carrier: float, touch: float, start: float) -> Press:
+def _slide(spec: PressSpec, mass: float, carrier: float, touch: float, balance: float) -> Press:
+    """Of what is in balance at a place, and begins there where the user has not said otherwise."""
     return Press(
         direction=np.array(spec.direction),
         stiffness=spec.stiffness,
@@ -101,7 +107,10 @@ def _slide(spec: PressSpec, mass: float, carrier: float, touch: float, start: fl
         free_length=spec.free_length,
         carrier_mass=carrier,
         touch=touch,
-        start=start,
+        start=balance if spec.start is None else touch + spec.start,
+        begins=spec.start,
+        speed=spec.start_speed,
+        balance=None if spec.start is None else balance,
     )
 
 
@@ -127,7 +136,7 @@ def plate_press(scene: Scene, name: str, before: Before) -> Press:
         roller = scene.rollers[one]
         face = faces_of_plate(center, axes, plane.size, np.array(roller.center))
         forces.append(onto_plate(face, _wheel(roller, -face.ways[:, 2], contacts, row), center))
-    weight = mass * float(np.array(scene.gravity) @ direction)
+    weight = mass * float(_begun_gravity(scene) @ direction)
 
     def spring(offset: float) -> float:
         return spec.preload - spec.stiffness * offset + weight

@@ -26,7 +26,15 @@ class Press(Frozen):
     free_length: float  # [mm]
     carrier_mass: float  # [g]
     touch: float  # where the spring has its free length [mm]
-    start: float  # static equilibrium at the start [mm]
+    start: float  # static equilibrium at the start, or where the user has it begin [mm]
+    begins: float | None = None  # from `touch`, where the user gave it [mm]; None: in balance
+    speed: float = 0.0  # along `direction` as the run begins [mm/ms]
+    balance: float | None = None  # static equilibrium, where the run does not begin there [mm]
+
+    @property
+    def off(self) -> float:
+        """How far from its balance it begins [mm]."""
+        return 0.0 if self.balance is None else abs(self.start - self.balance)
 
 
 @dataclass(frozen=True)
@@ -50,6 +58,8 @@ class ArmPart(Frozen):
     stiffness: float  # [N mm/rad]
     damping: float  # [N mm ms/rad]
     sprung: bool  # whether it has a spring or damping
+    angle: float = 0.0  # by which it is turned as the run begins, from the roller's centre as given [rad]
+    speed: float = 0.0  # as the run begins [rad/ms]
 
 
 @dataclass(frozen=True)
@@ -131,6 +141,7 @@ class RollerPart(MachinePart):
     axle: AxlePart | None = None  # with a motor, and behind it: the speed is the one that it aims at
     leader: int = -1  # body of the roller that leads its shaft, -1: it turns by itself, or leads
     ratio: float = 1.0  # its turns for one of that
+    spin: float = 0.0  # of one without a drive as the run begins [rad/ms]
 
     @property
     def loaded_mass(self) -> float:
@@ -153,6 +164,12 @@ class RollerPart(MachinePart):
             way = np.cross(self.axis, at - self.arm.pivot)
             total += mass * float(way @ way)
         return total
+
+    @property
+    def swung_length(self) -> float:
+        """Distance of its axis from the pivot of its arm [mm]."""
+        assert self.arm is not None, "asked only of a roller on an arm"
+        return float(np.linalg.norm(np.cross(self.axis, self.center - self.arm.pivot)))
 
     @property
     def round(self) -> tuple[float, float]:

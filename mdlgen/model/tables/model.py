@@ -9,6 +9,7 @@ from typing import TypeVar
 
 from mdlgen.geometry.arrays import Floats as Floats
 from mdlgen.geometry.arrays import Ints as Ints
+from mdlgen.model.over_time import factor, most, no_profile
 from mdlgen.model.tables.bodies import (
     Bodies,
     Bushings,
@@ -66,6 +67,13 @@ class Loads(Frozen):
     moment: Floats  # [N mm], (n, 3)
     entry: Ints  # of the spec's list, (n,)
     edge: tuple[str, ...]  # of each entry; empty: at a point
+    # corners of a factor over time of each entry [ms, 1], (n, 2), (0, 2): 1; none at all: none has any
+    profiles: tuple[Floats, ...] = ()
+
+    @property
+    def changing(self) -> list[int]:
+        """The entries that have a factor over time."""
+        return [entry for entry, profile in enumerate(self.profiles) if len(profile)]
 
 
 @dataclass(frozen=True)
@@ -138,6 +146,7 @@ class Model(Frozen):
     plastic: Plastic = field(default_factory=no_plastic)
     corners: Corners = field(default_factory=no_corners)  # Poisson's effect of plates
     reactions: Reactions = field(default_factory=no_reactions)
+    gravity_profile: Floats = field(default_factory=no_profile)  # corners [ms, 1], (n, 2); (0, 2): 1
 
     def __repr__(self) -> str:
         kinds = ("sheets", "rollers", "planes", "guides", "meshes", "bushings", "contacts")
@@ -173,6 +182,21 @@ class Model(Frozen):
 
     def roller(self, name: str) -> RollerPart:
         return next(r for r in self.rollers if r.name == name)
+
+    @property
+    def begun_gravity(self) -> Floats:
+        """Gravity as the run begins [mm/ms^2], (3,)."""
+        return factor(self.gravity_profile, 0.0) * self.gravity
+
+    @property
+    def most_gravity(self) -> Floats:
+        """Gravity at its greatest in size [mm/ms^2], (3,)."""
+        return most(self.gravity_profile) * self.gravity
+
+    @property
+    def changes(self) -> bool:
+        """Whether a load, or gravity, has a factor over time."""
+        return len(self.gravity_profile) > 0 or bool(self.loads.changing)
 
     @property
     def plates(self) -> list[tuple[PlanePart, Press]]:

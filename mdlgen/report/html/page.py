@@ -18,6 +18,7 @@ from mdlgen.report.html.curves import Panel, panels
 from mdlgen.report.html.differences import differences
 from mdlgen.report.html.environment import environment, library, licences, scripts, style
 from mdlgen.report.html.labels import labels
+from mdlgen.report.over_time import after_comma
 from mdlgen.report.sheets import parts_of_sheets
 from mdlgen.results.result import Result
 from mdlgen.results.strain import histories
@@ -104,6 +105,7 @@ def run_record(result: Result, name: str, draft: Ints | None = None) -> dict[str
         "summary": summary,
         "model": {
             "gravity": [float(v) * 1000.0 for v in result.model.gravity],
+            "gravity_profile": after_comma(result.model.gravity_profile),
             "analysis": result.model.run.analysis,
             "boxes": sum(sheet.count for sheet in result.model.sheets),
             "bushings": len(result.model.bushings),

@@ -17,6 +17,7 @@ from mdlgen.report.arrows import BREADTH, arrows, longest
 from mdlgen.report.begin import depths, known, met, of_no_part
 from mdlgen.report.html.environment import environment, library, licences
 from mdlgen.report.html.labels import labels
+from mdlgen.report.over_time import after_comma
 from mdlgen.report.sheets import parts_of_sheets
 
 _SCRIPTS = ("drawing.js", "labels.js", "player.js", "preview.js")
@@ -51,6 +52,7 @@ def preview(model: Model, source: str = "") -> str:
                 "pairs": len(model.pairs),
                 "cost": None if took is None else str(took),
                 "gravity": [float(g) * PER_SECOND_SQUARED for g in model.gravity],
+                "gravity_profile": after_comma(model.gravity_profile),
             },
             parts=parts,
             contacts=contacts,

@@ -40,8 +40,11 @@ def velocities(model: Model) -> Table:
         for b in boxes_of(model, s)
         if not model.bodies.fixed[b]
     ]
-    rows = np.array(rows, dtype=int)
-    velocity, spin = model.bodies.velocity[rows] / SECOND, model.bodies.spin[rows] / SECOND
+    spun = [roller for roller in model.rollers if roller.spin != 0.0]
+    still, turned = np.zeros((len(spun), 3)), [roller.spin * roller.axis for roller in spun]
+    boxes, rows = np.array(rows, dtype=int), [*rows, *(roller.body for roller in spun)]
+    velocity = np.concatenate([model.bodies.velocity[boxes], still]) / SECOND
+    spin = np.concatenate([model.bodies.spin[boxes], np.reshape(turned, (-1, 3))]) / SECOND
     parts: dict[str, Part] = {
         "velocity": (velocity, np.abs(velocity).max(initial=0.0)),
         "spin": (spin, np.abs(spin).max(initial=0.0)),

@@ -15,11 +15,12 @@ from mdlgen.verify.tables import Table, table
 
 RAMP_STATIONS = (0.0, 0.25, 0.5, 1.0, 2.0, 10.0)  # where the law of a drive is looked at, in ramps
 _STATIONS_WITHOUT = (0.0, 1e-3, 1.0)  # [s]
+OF_LOADS = "loads"  # the key of the times of all loads
 Times = Mapping[str, tuple[float, ...]]
 
 
 def stations(model: Model) -> Times:
-    """Times at which the law of each drive is looked at [s], by motion."""
+    """Times at which the law of each drive is looked at [s], by motion, and those of loads over time."""
     found = {}
     for roller in model.rollers:
         if roller.speed is not None:
@@ -28,6 +29,9 @@ def stations(model: Model) -> Times:
                 found[name] = _profile_stations(roller.profile[:, 0] * SECOND)
             else:
                 found[name] = tuple(s * ramp for s in RAMP_STATIONS) if ramp > 0.0 else _STATIONS_WITHOUT
+    changing = [model.loads.profiles[entry][:, 0] for entry in model.loads.changing]
+    if changing:
+        found[OF_LOADS] = _profile_stations(np.unique(np.concatenate(changing)) * SECOND)
     most = max(map(len, found.values()), default=0)  # a table has as many columns for all
     return {name: (*times, *[times[-1]] * (most - len(times))) for name, times in found.items()}
 

@@ -41,5 +41,5 @@ def expected(model: Model, times: Times) -> dict[str, Table]:
         "vectors": vectors(model),
         "surfaces": surfaces(model),
         "outputs": outputs(model),
-        "loads": loads(model),
+        "loads": loads(model, times),
     }

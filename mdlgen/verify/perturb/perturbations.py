@@ -109,12 +109,17 @@ def _moved(scene: Scene, base: Model, name: str, value: float) -> Callable[[], M
 
 
 def _later(scene: Scene, time: Parameter) -> float:
-    """A time of a corner of a drive, changed to one before the next corner [ms]."""
+    """A time of a corner of a drive or a load, changed to one before the next corner [ms]."""
     assert time.path is not None
-    _, name, _, _, k, _ = time.path
-    drive = scene.rollers[str(name)].drive
-    assert drive is not None and drive.profile is not None and isinstance(k, int)
-    after = [corner for corner, _ in drive.profile[k + 1 :]]
+    kind, name, k = time.path[0], time.path[1], time.path[-2]
+    assert isinstance(k, int)
+    if kind == "loads":
+        profile = scene.loads[int(name)].profile
+    else:
+        drive = scene.rollers[str(name)].drive
+        profile = drive.profile if drive is not None else None
+    assert profile is not None, "so it has corners"
+    after = [corner for corner, _ in profile[k + 1 :]]
     return time.value + 0.25 * (after[0] - time.value) if after else (time.value + FROM_ZERO["ms"]) * STEP
 
 

@@ -68,7 +68,7 @@ def _loaded(made: Model, base: Model, scene: Scene) -> Loads:
         row, column = divmod(body - sheet.first, sheet.n_x)
         local[k] = np.array([*load.at, 0.0]) - grid.local(sheet, 2.0 * column + 1, 2.0 * row + 1)
         force[k] = sheet.rotation @ np.array(load.force) / count[entry]
-    return replace(was, local=local, force=force, moment=moment)
+    return replace(was, local=local, force=force, moment=moment, profiles=now.profiles)
 
 
 def _shown(new: RollerPart, old: RollerPart) -> RollerPart:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from typing import Any
 
@@ -12,6 +12,7 @@ import numpy as np
 from mdlgen.altair.recorded import whole
 from mdlgen.verify.expected.clutches import SPINS, clutch_times
 from mdlgen.verify.expected.contacts import CONTACT_NUMBERS, SIX
+from mdlgen.verify.expected.loads import load_times
 from mdlgen.verify.expected.run import RUN_NUMBERS
 from mdlgen.verify.readback.graphics import graphic_tables, surface_table
 from mdlgen.verify.readback.rows import Row, flat, table_of
@@ -94,7 +95,9 @@ class ReadBack:
                 {n: r for n, r in values.get("outputs", {}).items() if not _of_contacts(r)}, self._output, 6
             ),
             "loads": table_of(
-                {n: r for n, r in values.get("forces", {}).items() if _LOAD.fullmatch(n)}, _load, 9
+                {n: r for n, r in values.get("forces", {}).items() if _LOAD.fullmatch(n)},
+                self._load,
+                3 + 6 * len(load_times(self.stations)),
             ),
         }
 
@@ -126,6 +129,25 @@ class ReadBack:
         except Unreadable:
             return [], said
         return [*axis, *laws], said
+
+    def _load(self, name: str, record: Mapping[str, Any]) -> Row:
+        """Where a load acts, its forces at all times of loads, and its moments."""
+        found = [*record["origin"]]
+        for word in ("force", "torque"):
+            for time in load_times(self.stations):
+                found += self._components(record["reference"], record[word], time)
+        return found, (record["body"],)
+
+    def _components(self, reference: str, given: Sequence[Any], time: float) -> list[float]:
+        """Along the global axes at a time [s]; as given where all three are numbers. Those of expressions are
+        along the axes of a marker."""
+        if not any(isinstance(value, str) for value in given):
+            return list(given)
+        try:
+            numbers = [law(value, time) if isinstance(value, str) else float(value) for value in given]
+            return (np.array(numbers) @ self.places[reference].axes).tolist()
+        except Unreadable:
+            return [_NAN] * 3
 
     def _curve_law(self, name: str, record: Mapping[str, str]) -> Row:
         variable = record["variable"]
@@ -206,11 +228,6 @@ def _marker(name: str, record: Mapping[str, Any]) -> Row:
 def _vector(name: str, record: Any) -> Row:
     length = float(np.linalg.norm(record))
     return [v / length if length else _NAN for v in record], ()
-
-
-def _load(name: str, record: Mapping[str, Any]) -> Row:
-    """A force and a moment; of an expression, which no load here is, there is no number."""
-    return [*record["origin"], *record["force"], *record["torque"]], (record["body"],)
 
 
 def marker_table(values: Values, reach: float = 0.0) -> Table:

@@ -15,14 +15,16 @@ from mdlgen.backends.lattice.kernels.state import (
     FACE_POINTS,
     LOST,
     NUMERICAL,
+    OWN_MASS,
     POWER,
     SHEET,
     THROUGH_DRIVES,
 )
-from mdlgen.mechanics.arm import AXIAL, DAMPING, speeding
+from mdlgen.mechanics.arm import AXIAL, DAMPING, INERTIA, speeding, torque_of
 from mdlgen.mechanics.axle import acting
 from mdlgen.mechanics.driven import SENSE, prescribed
 from mdlgen.mechanics.gate import GATE, power_of, stop
+from mdlgen.mechanics.over_time import weight_changes
 from mdlgen.mechanics.point import DISSIPATED as OF_PAIR
 from mdlgen.mechanics.point import FORCE_B, TORQUE_A, TORQUE_B
 from mdlgen.mechanics.vector import add, cross, dot, mat, rotate, three, three_from, vec
@@ -38,6 +40,28 @@ def _loads(work, driven):
         arm, w = rotate(mat(motion.r, b), three(loads[k].local)), vec(motion.w, b)
         power = dot(force, add(vec(motion.u, b), cross(w, arm))) + dot(moment, w)
         driven[islands.group[max(islands.part[b], 0)]] += power
+
+
+@njit(cache=True, error_model="numpy", **BORROWS)
+def _weights(work, t, h, driven):
+    """Power of the weights, by groups [N mm/ms], where gravity changes; t: the middle of the step, h: half of
+    it [ms]."""
+    tables, state, motion, islands = work.tables, work.state, work.mid.motion, work.islands
+    gravity, bodies, label = three(tables.gravity), tables.bodies, work.free.label
+    for n in range(tables.nodes.size):
+        rate = vec(motion.u, tables.nodes[n])
+        driven[islands.group[label[n]]] += tables.boxes[n, OWN_MASS] * dot(gravity, rate)
+    for b in tables.moving:
+        slide = bodies[b].slide
+        if slide < 0:
+            continue
+        mass = bodies[b].press[INERTIA] if bodies[b].swings == 0 else bodies[b].mass
+        power = mass * dot(gravity, vec(motion.u, b))
+        if bodies[b].swings > 0:
+            angle = state.s[slide] + h * state.ub[slide]
+            torque = torque_of(bodies[b], angle, gravity, t, h) + speeding(bodies[b], t, h)
+            power += torque * state.ub[slide]
+        driven[islands.group[islands.part[b]]] += power
 
 
 @njit(cache=True, error_model="numpy", **BORROWS)
@@ -89,6 +113,8 @@ def account(work, t, dt, count, energies, driven):
     else:
         energies[0, DISSIPATED] += dt * mid.totals[LOST]
         driven[0] += mid.totals[POWER]
+    if weight_changes(tables.changes):
+        _weights(work, t + 0.5 * dt, 0.5 * dt, driven)
     for b in tables.moving:
         group = islands.group[islands.part[b]]
         if bodies[b].swings >= GATE:

@@ -24,6 +24,7 @@ from mdlgen.mechanics.corner import corner_forces
 from mdlgen.mechanics.driven import prescribed
 from mdlgen.mechanics.frame import Motion
 from mdlgen.mechanics.gate import GATE, course, rate_gate, stop
+from mdlgen.mechanics.over_time import weight_changes
 from mdlgen.mechanics.point import DEPTH, PRESSING, STORED
 from mdlgen.mechanics.turning import turning
 from mdlgen.mechanics.vector import back, dot, mat, rotate, three, vec
@@ -41,6 +42,8 @@ def ledger(work, t, energies, rows):
     first, groups, regions = work.search.first, islands.group_of_row, work.search.regions
     x, r, v, l, s, vb = state.x, state.r, state.v, state.l, state.s, state.vb
     u, w, f = mid.motion.u, mid.motion.w, mid.forces
+    if weight_changes(tables.changes):
+        gravity[:] = 0.0  # until the next step sets it: such a weight has no potential
     u[:] = 0.0
     w[:] = 0.0
     f[:] = 0.0

@@ -102,6 +102,7 @@ from mdlgen.mechanics.arm import (
     way_of,
 )
 from mdlgen.mechanics.gate import stop
+from mdlgen.mechanics.over_time import set_to
 from mdlgen.mechanics.records import FOLLOWER
 from mdlgen.mechanics.vector import back, dot, mat, rotate, three, three_from, vec
 from mdlgen.program.kernel import BORROWS, njit
@@ -267,6 +268,7 @@ def midpoint(work, t, dt, tolerance, control):
     inner, alike, air = 0, 0, False
     if tables.hinges.size > 0:
         begin_hinges(tables, state.r)
+    set_to(tables.changes, tables.loads, tables.gravity, t, t + dt)
     for iteration in range(NEWTON_MOST):
         place(tables, h, t + h, state, mid.motion)
         if iteration == 0 or margin < dt * moved:

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from itertools import pairwise
-
 import numpy as np
 
 from mdlgen.altair import refinement
@@ -13,6 +11,7 @@ from mdlgen.backends.motionsolve.writer.body import add_body
 from mdlgen.backends.motionsolve.writer.facets import Shown
 from mdlgen.backends.motionsolve.writer.ids import GROUND_ID, body_id, graphic_id
 from mdlgen.backends.motionsolve.writer.joints import add_slide, join
+from mdlgen.backends.motionsolve.writer.over_time import linear
 from mdlgen.backends.motionsolve.writer.parts.kind import Kind
 from mdlgen.backends.motionsolve.writer.requests import add_request
 from mdlgen.backends.motionsolve.writer.rows import (
@@ -80,10 +79,7 @@ def law(roller: RollerPart) -> str:
         full = thousandfold(roller.speed)
         return f"{full}*(1-MAX(0,1-TIME/{per_thousand(roller.ramp)}))" if roller.ramp > 0.0 else full
     times, speeds = ([convert(v) for v in roller.profile[:, k].tolist()] for k, convert in _CONVERT)
-    parts = [speeds[0]]
-    for (t, w), (t_end, w_end) in pairwise(zip(times, speeds, strict=True)):
-        parts.append(f"({w_end}-({w}))*MAX(0,1-MAX(0,({t_end}-TIME)/({t_end}-{t})))")
-    return "+".join(parts)
+    return linear(times, speeds)
 
 
 def _add_clutch(deck: Deck, model: Model, roller: RollerPart, way: OneWay, axle: Joint) -> None:

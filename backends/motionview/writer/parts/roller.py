@@ -38,6 +38,7 @@ class RollerView(PartView):
     template = "roller.mdl.j2"
     axis: Axis
     guide: str  # global vector that fixes the x axis of the body
+    spins: bool  # as the run begins
     driven: bool  # has a speed: of its axle, or of the shaft of its clutch
     free_sense: int  # of its clutch, 1 or -1; 0: it has none
     ramped: bool
@@ -66,6 +67,7 @@ class _Rollers(Kind[RollerPart]):
             given=given,
             axis=axis,
             guide=zx_vector(model.bodies.rotation[part.body]),
+            spins=part.spin != 0.0,
             driven=part.speed is not None,
             free_sense=0 if part.one_way is None else part.one_way.direction,
             ramped=part.ramp > 0.0,

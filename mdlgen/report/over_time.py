@@ -1,0 +1,18 @@
+"""Factors over time in words."""
+
+from __future__ import annotations
+
+from mdlgen.model.tables import Floats
+
+
+def words(profile: Floats) -> str:
+    """What a factor does, as a page says it; "" for none."""
+    if not len(profile):
+        return ""
+    corners = ", ".join(f"{factor:.4g} at {time:.4g} ms" for time, factor in profile.tolist())
+    return f"times a factor of {corners}"
+
+
+def after_comma(profile: Floats) -> str:
+    """The same after what it multiplies."""
+    return f", {words(profile)}" if len(profile) else ""
