@@ -87,10 +87,6 @@ class SpecError(MdlgenError):
         shown = printable(self.source[first : first + 100])
         return f"    {shown}\n    {' ' * (self.place.column - 1 - first)}^"
 
-    def located(self, place: Place) -> SpecError:
-        """The same error with its place in a file."""
-        return SpecError(self.message, self.path, place)
-
 
 class RefusedError(SpecError):
     """A valid scene that this backend cannot represent; the message names the part and the reason."""

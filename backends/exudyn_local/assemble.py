@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Any, NamedTuple
 
@@ -48,9 +49,10 @@ def assemble(
     work: Work,
     recorder: Recorder,
     begun: Begun | None = None,
+    bring: Callable[[float], None] | None = None,
 ) -> Assembly:
     """Of a Model and its System; the recorder says where the last step ended. `begun`: it begins so, None: as
-    the Model does."""
+    the Model does. `bring` is called with the part of the load in each step of a static run."""
     from exudyn.itemInterface import (
         Mass1D,
         Node1D,
@@ -144,11 +146,15 @@ def assemble(
         here[:] = state.GetODE2Coordinates(copy=False)
         if not static:
             rates[:] = state.GetODE2Coordinates_t(copy=False)
+        if bring is not None:
+            bring(t)
         forces(tables, Coordinates(here, rates, t), t if static else 1.0, work)
         return f
 
     def tangent(mbs, t, itemNumber, q, q_t, fODE2, fODE2_t):
         lay(t)
+        if bring is not None:
+            bring(t)
         at = Coordinates(np.array(q), rest.copy() if static else np.array(q_t), t)
         by = (fODE2, 0.0 if static else fODE2_t)
         jacobian(tables, system.elements, at, t if static else 1.0, by, static, owner, work, data)

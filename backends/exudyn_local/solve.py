@@ -20,6 +20,7 @@ from mdlgen.backends.exudyn_local.assemble import Assembly, assemble
 from mdlgen.backends.exudyn_local.films import entries_of
 from mdlgen.backends.exudyn_local.passing import Parts
 from mdlgen.backends.exudyn_local.place import owners
+from mdlgen.backends.exudyn_local.prestress import bring_on
 from mdlgen.backends.exudyn_local.reacting import Reacting, in_parts
 from mdlgen.backends.exudyn_local.recorder import Recorder
 from mdlgen.backends.exudyn_local.scope import check
@@ -51,6 +52,7 @@ from mdlgen.results.result import Result
 # Steps in which the load of a static run grows; more where the balance that they lead to does not stand.
 LOAD_STEPS = (20, 200)
 UNSTABLE = "the balance is unstable"
+DIVERGED = "Exudyn did not converge"
 # A run and the one at twice its step, from which its error is estimated, are made where the finer one costs
 # less than the first [s, see step.cost]; the step is halved for the tolerance where that costs less than the
 # second.
@@ -88,6 +90,9 @@ def solve(model: Model, progress: Progress | None = None, step: float | None = N
         result = once(LOAD_STEPS[0], 0.0)
         if result.status.startswith(UNSTABLE):
             result = once(LOAD_STEPS[1], 0.0)
+        elif result.status.startswith(DIVERGED) and model.bushings.rest.any():
+            stressed = _Runs(exu, model, (system, pattern, work), progress, until, in_steps=True)
+            result = stressed.once(LOAD_STEPS[0], 0.0)
     elif wanted is None:
         result = _refined(model, system, once, until, *choose_steps(model, system, work))
     else:
@@ -201,15 +206,17 @@ class _Runs:
         built: tuple[System, Pattern, Work],
         progress: Progress | None,
         until: float,
+        in_steps: bool = False,
     ):
         self._exu, self._model, self._built = exu, model, built
         self._progress, self._until = progress, until
+        self._in_steps = in_steps  # the stress that sheets start with comes on with the load of a static run
 
     def once(self, count: int, h: float) -> Result:
         """One run of `count` steps of h [s], or a static one of as many steps of the load, where h is 0."""
         while True:
             watch = self._progress, self._until
-            result, left = _once(self._exu, self._model, *self._built, *watch, count, h)
+            result, left = _once(self._exu, self._model, *self._built, *watch, count, h, self._in_steps)
             wide = None if left is None else wider(self._model, left)
             if wide is None:
                 return result
@@ -227,6 +234,7 @@ def _once(
     until: float,
     count: int,
     h: float,
+    in_steps: bool = False,
 ) -> tuple[Result, np.ndarray | None]:
     """One run of `count` steps of h [s], or a static one of as many steps of the load, where h is 0. It ends
     at `until`, of `time.perf_counter` [s]. With it the places of all bodies (bodies, 3) [mm] where one has
@@ -241,7 +249,8 @@ def _once(
             return _run(exu, of, model, many, step, recorder, None, known, begin)
 
         parts = Parts(exu, model, recorder, go, h)
-    assembly = parts.begin() if parts else assemble(exu, model, system, pattern, work, recorder)
+    bring = bring_on(model, system) if in_steps else None
+    assembly = parts.begin() if parts else assemble(exu, model, system, pattern, work, recorder, bring=bring)
     static = model.run.analysis == "static"
     if not static:
         recorder.plan(h)
@@ -261,6 +270,8 @@ def _once(
             reacting.undo()
     wall = clock.perf_counter() - begun
     assembly = parts.assembly if parts else assembly
+    if bring is not None:
+        bring(1.0)  # a run that failed ended with a part
     data = assembly.mbs.systemData
     q, v = np.array(data.GetODE2Coordinates()), np.array(data.GetODE2Coordinates_t())
     if static:
@@ -277,7 +288,7 @@ def _once(
     if reason is None and not static and recorder.time < model.run.duration * MS * (1 - 1e-9):
         reason = f"stopped at {recorder.time / MS:.6g} ms, before the end at {model.run.duration:g} ms"
     if reason is None and static:
-        reason = _unbalanced(system, q, work)
+        reason = _unbalanced(model, system, q, work)
     if reason is None and static and (ways := falling(system, pattern, q, work)) > 0:
         which = "one direction" if ways == 1 else f"{ways} directions"
         reason = f"{UNSTABLE}: it falls in {which}; a small load aside leads to one that stands"
@@ -334,8 +345,8 @@ def _run(
     known: bool = False,
     begin: float = 0.0,
 ) -> str | None:
-    """Runs from `begin` [s]; returns the reason of a failure, or None. `known`: accelerations at the start are
-    known."""
+    """Runs from `begin` [s]; returns the reason of a failure, or None. `known`: accelerations are, at the
+    start."""
     if assembly.system.free == 0:
         return "nothing in this scene can move"
     settings = settings_of(exu, count, begin + count * h, known or recorder.touching > 0, begin)
@@ -353,7 +364,7 @@ def _run(
         if isinstance(error, KeyboardInterrupt):
             raise
         lines = [line.strip() for line in str(error).splitlines() if line.strip()]
-        return f"Exudyn did not converge: {lines[0] if lines else type(error).__name__}"[:300]
+        return f"{DIVERGED}: {lines[0] if lines else type(error).__name__}"[:300]
     return None if done else "Exudyn stopped before the end"
 
 
@@ -374,8 +385,8 @@ def _unbalanced_energy(model: Model, result: Result, recorder: Recorder, h: floa
     return None
 
 
-def _unbalanced(system: System, q: np.ndarray, work: Work) -> str | None:
-    """Static equilibrium by our own account: the residual against the largest force in the sheet."""
+def _unbalanced(model: Model, system: System, q: np.ndarray, work: Work) -> str | None:
+    """Static equilibrium by our own account: the residual against weight, loads and stress at the start."""
     forces(system.tables, Coordinates(q, np.zeros_like(q), 1.0), 1.0, work)
     residual = work.forces.copy()
     for row in system.bodies:
@@ -384,7 +395,9 @@ def _unbalanced(system: System, q: np.ndarray, work: Work) -> str | None:
             e = row["reference"][3:] + q[n + 3 : n + 7]
             residual[n + 3 : n + 7] -= e * (e @ residual[n + 3 : n + 7]) / (e @ e)
     weight = float(system.bodies["mass"].sum() * np.linalg.norm(system.gravity))
-    loads = float(np.abs(system.loads["force"]).sum() + np.abs(system.loads["moment"]).sum() / 0.1)
+    rest = model.bushings.rest[system.bushings["row"]]
+    bent = float(np.abs(system.bushings["k"][:, 3:] * rest).max(initial=0.0))
+    loads = float(np.abs(system.loads["force"]).sum() + (np.abs(system.loads["moment"]).sum() + bent) / 0.1)
     allowed = 1e-4 * max(weight, loads, 1e-9)
     worst = float(np.abs(residual).max())
     return None if worst <= allowed else f"static residual {worst:.3g} N above {allowed:.3g} N"

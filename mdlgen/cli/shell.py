@@ -256,11 +256,12 @@ def _located(error: MdlgenError, spec: Path | None) -> MdlgenError:
     if spec is None or not isinstance(error, SpecError) or error.place is not None or not error.path:
         return error
     from mdlgen.spec.load import parse, read
+    from mdlgen.spec.mistakes import located
 
     try:
         if not spec.is_file():  # a pipe has been read
             return error
-        return error.located(parse(read(spec), str(spec)).place(error.path))
+        return located(error, parse(read(spec), str(spec)))
     except (OSError, ValueError, MdlgenError):
         return error
 

@@ -18,6 +18,7 @@ from mdlgen.errors import MdlgenError, SpecError
 from mdlgen.live.controls import controls
 from mdlgen.spec.limits import DEFAULT
 from mdlgen.spec.load import Document, meant, parse
+from mdlgen.spec.mistakes import located
 
 if TYPE_CHECKING:
     from mdlgen.model.tables import Model
@@ -90,7 +91,7 @@ def mistakes(error: MdlgenError, job: Job) -> list[dict[str, Any]]:
         if isinstance(one, SpecError):
             if one.place is None and one.path:
                 with contextlib.suppress(MdlgenError):
-                    one = one.located(_document(job.text, job.file, job.limits).place(one.path))
+                    one = located(one, _document(job.text, job.file, job.limits))
             path = ".".join(map(str, one.path))
             line = one.place.line if one.place is not None and one.place.file == job.file else None
         found.append({"says": str(one), "line": line, "path": path})

@@ -5,6 +5,7 @@ from __future__ import annotations
 import difflib
 import re
 from collections.abc import Callable, Iterator, Sequence
+from copy import deepcopy
 from functools import partial
 from typing import Any
 
@@ -222,6 +223,14 @@ def _describe(error: Any, document: Document) -> SpecError:
             said = "expected a list, each item begun with '- '"
         message = f"{said.replace('valid tuple', 'list')}, got {error['input']!r}"[:300] + _example(inner)
     return SpecError(message, path, document.place(path, prefer_key))
+
+
+def located(error: SpecError, document: Document) -> SpecError:
+    """An error of a later stage, with the path and the place that its value has in the text of the scene."""
+    origins: dict[SpecPath, SpecPath] = {}
+    written_out(deepcopy(document.data), origins)
+    path = _as_written(in_the_text(error.path, origins), document)
+    return SpecError(error.message, path, document.place(path))
 
 
 def _as_written(path: SpecPath, document: Document) -> SpecPath:

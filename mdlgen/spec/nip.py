@@ -110,10 +110,16 @@ def written(data: dict[str, Any], origins: dict[Path, Path], fill: Fill) -> None
         nip = nip | {side: merged(nip[side], g) for side, g in given.items() if isinstance(g, dict)}
         made = _Written(data, name, nip, fill)
         for side, roller in own.items():
+            said = given[side]
             for key in ("", *nip[side]):
                 tail = (key,) if key else ()
-                if not isinstance(given[side], dict) or (key and key not in given[side]):
+                inner = said.get(key) if isinstance(said, dict) else None
+                if not isinstance(said, dict) or (key and key not in said):
                     origins["rollers", roller, *tail] = ("nips", name, side, *tail)
+                elif isinstance(inner, dict):  # both have a part of it: the whole stands in the nip
+                    origins["rollers", roller, key] = ("nips", name, side, key)
+                    own_paths = [("rollers", roller, key, last) for last in inner]
+                    origins.update(zip(own_paths, own_paths, strict=True))
             for key, path in (("center", ("at",)), ("axis", ("axis",)), ("press.preload", ("force",))):
                 origins["rollers", roller, *key.split(".")] = ("nips", name, *path)
             rollers[roller] = made.roller(side)

@@ -1,4 +1,5 @@
-"""Sheets that come in and leave in a run: closed forms, shifts in time, energy, resumed runs, both solvers."""
+"""Sheets that come in and leave in a run: closed forms, shifts in time, energy, resumed runs, both
+solvers."""
 
 from __future__ import annotations
 

@@ -95,6 +95,18 @@ def test_creases_open_alike_on_all_grids() -> None:
     assert angles["crease: 0.005 N/rad"] < 1e-6 < 0.1 < angles["stiffness: 0.1"]
 
 
+@pytest.mark.parametrize("moment", [yielding.MOMENT, 0.0])
+def test_exudyn_balances_a_strip_that_starts_flat_with_a_crease(moment: float) -> None:
+    """Its iteration diverges where all of the crease's moment comes at once: 8 rows, 20 deg."""
+    sets = [text for text in yielding.crease_sets(8) if moment or not text.startswith("loads")]
+    result = solved("cantilever", *sets, solver="exudyn")
+    assert result.status == "ok"
+    n, (w, x) = result.model.sheets[0].count, result.rotation[-1, 7, :2]
+    bent = moment * (yielding.LENGTH - yielding.LENGTH / n / 2) / yielding.BENDING
+    exact = yielding.FOLD + np.degrees(moment / yielding.CREASE + bent)
+    assert np.degrees(2.0 * np.arctan2(x, w)) == pytest.approx(exact, rel=1e-6)
+
+
 def test_what_does_not_yield_has_the_same_bits_as_without_the_key() -> None:
     high = solved("crease", *SHORT, "materials.eur10.yield.curvature=10 1/mm")
     none = solved("crease", *SHORT, "materials.eur10.yield=null")

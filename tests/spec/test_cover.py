@@ -11,6 +11,8 @@ from mdlgen.model.covers import levers, speed_ratio
 from mdlgen.paths import samples
 from mdlgen.report.overview import overview
 from mdlgen.rubber.contact import loaded
+from mdlgen.spec.load import parse
+from mdlgen.spec.mistakes import located
 
 SAMPLE = samples() / "rubber_nip.yaml"
 COVER = "nips.feed.lower.cover"
@@ -71,6 +73,24 @@ def test_it_is_said_by_check():
 def test_texts_refuse_it_by_name_and_say_what_to_write(output):
     with pytest.raises(RefusedError, match=r"feed_lower has a cover.*1\.0196 times.*N/mm\^1\.5"):
         mdlgen.emit(mdlgen.lower(scene()), output)
+
+
+def test_a_refused_cover_is_named_where_it_stands_in_the_text():
+    """Rollers and contacts of a nip stand under nips."""
+    text = SAMPLE.read_text(encoding="utf-8")
+    with pytest.raises(RefusedError) as caught:
+        mdlgen.emit(mdlgen.lower(scene()), "motionview")
+    found = located(caught.value, parse(text, "f.yaml"))
+    line = next(k for k, line in enumerate(text.splitlines(), 1) if "cover: {" in line)
+    assert str(found).startswith(f"f.yaml:{line}:14: {COVER}: MotionView text: feed_lower has a cover")
+    contact = located(SpecError("of it", ("contacts", 0, "friction")), parse(text, "f.yaml"))
+    assert contact.path == ("nips", "feed", "lower", "contact", "friction")
+
+
+def test_a_cover_that_is_set_in_part_is_named_in_its_nip():
+    with pytest.raises(SpecError) as caught:
+        scene("rollers.feed_lower.cover.modulus=0.01 MPa", "rollers.feed_lower.cover.hardness=null")
+    assert f":19:7: {COVER}: a force of 10 N presses the cover" in str(caught.value)
 
 
 @pytest.mark.parametrize(

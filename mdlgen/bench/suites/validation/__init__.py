@@ -19,23 +19,14 @@ from mdlgen.bench.suites.validation import (
     rigid,
     rolling,
     rubbing,
+    sticking,
     swinging,
     yielding,
 )
 
 GROUPS = (
-    bending,
-    plates,
-    poisson,
-    swinging,
-    yielding,
-    belts,
-    rolling,
-    rigid,
-    rubbing,
-    edges,
-    driving,
-    moving,
+    *(bending, plates, poisson, swinging, yielding, belts, rolling, rigid, rubbing, sticking, edges),
+    *(driving, moving),
 )
 
 
