@@ -75,8 +75,8 @@ def assemble(
         for r in model.rollers
         if r.begins_turning
     }
-    for begun in begun_rates(model):
-        starts[int(system.bodies[begun.of][begun.body])] = begun.rate / MS * (1.0 if begun.turns else MM)
+    for rate in begun_rates(model):
+        starts[int(system.bodies[rate.of][rate.body])] = rate.rate / MS * (1.0 if rate.turns else MM)
     for body in range(len(bodies.name)):
         row = system.bodies[body]
         n = row["first"]

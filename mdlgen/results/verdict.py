@@ -10,16 +10,12 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from mdlgen.errors import SpecError, did_you_mean
-from mdlgen.model.parts.kinds import KINDS
-from mdlgen.model.tables import Floats, PlanePart, RollerPart
-from mdlgen.results.drag import drags
+from mdlgen.model.tables import Floats
 from mdlgen.results.estimates import SAFETY_REST
+from mdlgen.results.over_time import series
 from mdlgen.results.passing import came, there
 from mdlgen.results.result import OK
 from mdlgen.results.sensors import MEASURES
-from mdlgen.results.slide import slide
-from mdlgen.results.torques import contact_torque, drive_power, drive_torque, grips
-from mdlgen.results.way import way_of
 from mdlgen.spec.require import Requirement, requirement
 from mdlgen.units import parse_unit, same
 
@@ -299,12 +295,12 @@ def _values(result: Result, record: Mapping[str, Any], path: str, wanted: Requir
                 f"{path} {has}, the limit {f'is in {wanted.unit}' if wanted.unit else 'has no unit'}"
             )
     if wanted.throughout:
-        return _while_there(result, path, _series(result, path)), unit
+        return _while_there(result, path, series(result, path)), unit
     if wanted.at is not None:
         end = result.model.run.duration
         if not 0.0 <= wanted.at <= end * (1.0 + 1e-9):
             raise ValueError(f"{wanted.at:g} ms is not in the run of {end:g} ms")
-        return np.array([np.interp([wanted.at], result.time, _series(result, path))[0]]), unit
+        return np.array([np.interp([wanted.at], result.time, series(result, path))[0]]), unit
     if value is None:
         return np.zeros(0), unit
     return np.array([value * (own.factor if own is not None else 1.0)]), unit
@@ -360,72 +356,3 @@ def _key(node: Mapping[str, Any], part: str, path: str) -> tuple[str, str]:
 
 def _bare(key: str) -> str:
     return next((key.removesuffix(end) for end in UNITS if key.endswith(end)), key)
-
-
-def _series(result: Result, path: str) -> Floats:
-    """A measure over the stored times, in internal units, (t,)."""
-    kind, _, rest = path.partition(".")
-    name, _, what = rest.partition(".")
-    model = result.model
-    if kind == "sheets":
-        index = next(k for k, sheet in enumerate(model.sheets) if sheet.name == name)
-        place, rate, yaw = result.sheet_motion(index)
-        sizes = {"yaw": yaw, "yaw_deg": yaw}
-        part = model.sheets[index]
-        begun = model.mass_share(index) @ model.bodies.position[part.first : part.first + part.count]
-        for key, vectors in (("travel", place - begun), ("speed", rate)):
-            sizes[key] = np.linalg.norm(vectors, axis=1)
-            sizes |= {f"{key}.{axis}": vectors[:, k] for k, axis in enumerate("xyz")}
-        if what in sizes:
-            return sizes[what]
-        tension = result.tensions[index] if what.startswith("tension") else None
-        if tension is not None:
-            most, least = tension.greatest, tension.least
-            sizes = {"tension": np.maximum(most, -least), "tension.max": most, "tension.min": least}
-            if (what := what.removesuffix("_n")) in sizes:
-                return sizes[what]
-        if what in ("way", "way_mm", "skew", "skew_deg"):
-            way = way_of(result, index)
-            return way.length if what.startswith("way") else way.skew
-    parts = {part.name: part for part in model.machine}
-    if kind in {each.table for each in KINDS} and name in parts:
-        if what in ("nip_force", "nip_force_n"):
-            sides = zip(model.contacts.part_a, model.contacts.part_b, strict=True)
-            return result.contact_force[:, [k for k, ends in enumerate(sides) if name in ends]].sum(axis=1)
-        if what in ("slide", "slide_mm") and isinstance(part := parts[name], RollerPart | PlanePart):
-            way = slide(result, part)
-            if way is not None:
-                return way
-        if (
-            what in ("slide", "slide_mm", "angle", "angle_deg")
-            and (way := place(result, parts[name])) is not None
-        ):
-            return way
-        for sheet, drag in drags(result, parts[name]).items():
-            if what in (f"contacts.{sheet}.drag", f"contacts.{sheet}.drag_n"):
-                return drag
-        if kind == "rollers" and what in ("omega", "omega_rad_per_s"):
-            roller = model.roller(name)
-            return result.spin[:, roller.body] @ roller.axis
-        if kind == "rollers" and (found := _turning(result, model.roller(name), what)) is not None:
-            return found
-    raise ValueError(
-        f"{path} is known at the end alone; over time there are yaw, skew, speed, travel, way and tension of "
-        "sheets, nip_force and slide of parts, contacts.SHEET.drag of planes, guides and meshes, and omega, "
-        "torque, power, contact_torque and traction.OTHER.reserve of rollers"
-    )
-
-
-def _turning(result: Result, roller: RollerPart, what: str) -> Floats | None:
-    """What turns a roller over the stored times, (t,); of a grip that does not act, all is left."""
-    for name, unit, found in (
-        ("torque", "n_mm", drive_torque),
-        ("power", "w", drive_power),
-        ("contact_torque", "n_mm", contact_torque),
-    ):
-        if what in (name, f"{name}_{unit}"):
-            return found(result, roller)
-    for grip in grips(result, roller):
-        if what == f"traction.{grip.other}.reserve":
-            return 1.0 - np.nan_to_num(grip.used)
-    return None
