@@ -40,8 +40,8 @@ def behind(result: Result, roller: RollerPart) -> Floats | None:
     """By what angle it is behind its shaft, or what speed control has for that [rad], (t,)."""
     if result.behind is None:
         return None
-    own = [part for part in result.model.rollers if part.axle is not None]
-    return result.behind[:, own.index(roller)]
+    own = [part.name for part in result.model.rollers if part.axle is not None]
+    return result.behind[:, own.index(roller.name)]
 
 
 def axle_torque(result: Result, roller: RollerPart) -> Floats | None:

@@ -88,9 +88,10 @@ def test_a_table_and_a_lower_voltage_are_what_the_line_is() -> None:
 @pytest.mark.parametrize("solver", SOLVERS)
 def test_a_limiter_gives_its_torque_and_then_holds(solver: str) -> None:
     drive = "rollers.feed.drive={profile: [[0 ms, 0 rad/s], [1 ms, 60 rad/s]]}"
-    result = solved(alone(drive, "rollers.feed.limiter={torque: 15 N*mm}"), solver)
+    made = alone(drive, "rollers.feed.limiter={torque: 15 N*mm}", "run.print_step=0.1 ms")
+    result = solved(made, solver)
     turns = spin(result, "feed")
-    assert turns[3] - turns[2] == pytest.approx(15.0 / FEED, rel=1e-3)  # by its torque alone
+    assert turns[30] - turns[20] == pytest.approx(15.0 / FEED, rel=1e-3)  # by its torque alone
     assert turns[-3:] == pytest.approx(0.06, rel=1e-4)
     (slip,) = result.events
     assert slip["kind"] == "limiter_slips"
@@ -132,13 +133,14 @@ def test_a_stepper_keeps_in_step_below_its_torque(solver: str) -> None:
 
 @pytest.mark.parametrize("solver", SOLVERS)
 def test_a_stepper_that_is_held_loses_the_periods_of_its_field(solver: str) -> None:
-    """The field turns by three periods, 2 pi / 50 each, while a bearing of more than 20 N mm holds it."""
+    """The field turns by three periods, 2 pi / 50 each, while a bearing holds it, by more than 20 N mm and 600 N mm ms/rad times
+    the speed of the field."""
     turns = 3 * 2.0 * np.pi / 50.0
     profile = f"[[0 ms, 0 rad/s], [4 ms, {1e3 * turns / 4.0} rad/s], [8 ms, 0 rad/s]]"
-    result = solved(alone(STEPPER % profile, "rollers.feed.bearing={torque: 60 N*mm}"), solver)
+    result = solved(alone(STEPPER % profile, "rollers.feed.bearing={torque: 100 N*mm}"), solver)
     lost = lost_steps(result, result.model.roller("feed"))
     assert lost is not None and lost[0] == 12
-    assert result.behind is not None and result.behind[-1, 0] == pytest.approx(turns, rel=2e-3)
+    assert result.behind is not None and result.behind[-1, 0] == pytest.approx(turns, rel=3e-3)
     assert "lost_steps" in {event["kind"] for event in result.events}
 
 
