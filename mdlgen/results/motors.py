@@ -18,9 +18,10 @@ if TYPE_CHECKING:
     from mdlgen.results.result import Result
 
 # A motor stalls while its roller is slower than this part of the speed that it aims at and its torque is
-# above this part of the most that it can give there, for longer than STALLS [ms]: a start from rest, whose
-# torque is that of a stall, takes longer than this only where the motor hardly moves its load.
-SLOW, HARD, STALLS = 0.02, 0.9, 5.0
+# above this part of the most that it can give there, for longer than STALLS [ms]. One that starts is not
+# stalled: in the second half of such a time it is GAINS times as fast as in the first one (3 where it speeds
+# up evenly from rest).
+SLOW, HARD, STALLS, GAINS = 0.02, 0.9, 5.0, 1.5
 # A limiter slips while its roller turns against the shaft at more than this times its creep, for longer than
 # SLIPS [ms].
 SLIPPING, SLIPS = 2.0, 1.0
@@ -40,8 +41,8 @@ def behind(result: Result, roller: RollerPart) -> Floats | None:
     """By what angle it is behind its shaft, or what speed control has for that [rad], (t,)."""
     if result.behind is None:
         return None
-    own = [part for part in result.model.rollers if part.axle is not None]
-    return result.behind[:, own.index(roller)]
+    own = [part.name for part in result.model.rollers if part.axle is not None]
+    return result.behind[:, own.index(roller.name)]
 
 
 def axle_torque(result: Result, roller: RollerPart) -> Floats | None:
@@ -97,7 +98,15 @@ def stalls(result: Result, roller: RollerPart) -> list[tuple[int, int]]:
         pulls = np.ones(len(turns), bool)
     time = result.time
     found = intervals(time, wanted & slow & pulls, 0.0)
-    return [(first, last) for first, last in found if time[last] - time[first] > STALLS]
+    found = [(first, last) for first, last in found if time[last] - time[first] > STALLS]
+    return [part for part in found if not _gains(np.sign(aims) * turns, *part)]
+
+
+def _gains(fast: Floats, first: int, last: int) -> bool:
+    """Whether a roller speeds up between two stored states."""
+    middle = (first + last) // 2
+    before, after = fast[first : middle + 1].mean(), fast[middle : last + 1].mean()
+    return bool(after > 0.0 and after > GAINS * before)
 
 
 def lost_steps(result: Result, roller: RollerPart) -> tuple[int, Floats] | None:

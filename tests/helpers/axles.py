@@ -22,6 +22,11 @@ rollers:
 run: {duration: 10 ms, print_step: 1 ms, step: 0.1 ms}
 """)
 FEED, OTHER = 1000.0, 500.0  # inertia of a cylinder, m r^2 / 2 [g mm^2]
+STEPS_ON = "rollers.feed.drive={speed: 300 rad/s, ramp: 5 ms, motor: {torque: 20 N*mm, steps: {}}}"
+CONTROLLED = (
+    "rollers.other.drive={speed: 100 rad/s, motor: {torque: 20 N*mm, speed: 200 rad/s, "
+    "control: {proportional: 400 N*mm*ms/rad, integral: 40 N*mm/rad}}}"
+)
 
 # Between a roller that feeds and one on a limiter whose shaft stands; a note that goes through.
 RETARD = on_paper("""

@@ -18,6 +18,9 @@ SOLVERS = ("lattice", "exudyn")
 MOTOR = "rollers.feed.drive={motor: {torque: 10 N*mm, speed: 300 rad/s, inertia: 500 g*mm^2, gear: 2}}"
 STALL, NO_LOAD, INERTIA = 20.0, 0.15, FEED + 2000.0
 TAU = INERTIA * NO_LOAD / STALL
+# A bearing or a limiter has its torque from 0 on over a creep of 0.1 rad/s, which is passed in less than a
+# step: exudyn, which takes the mean of both ends, misses half of the first step, 0.01 ms torque / inertia.
+CREEP, FINE = 1e-4, "run.step=0.02 ms"
 STEPPER = "rollers.feed.drive={profile: %s, motor: {torque: 20 N*mm, steps: {damping: 600 N*mm*ms/rad}}}"
 
 
@@ -43,10 +46,10 @@ def test_the_error_of_a_motor_is_of_second_order() -> None:
 def test_a_motor_runs_where_its_line_meets_the_brake(solver: str) -> None:
     """The speed goes to w0 (1 - M / T0) with the same time constant, and drag makes both less."""
     bearing = "rollers.feed.bearing={torque: 4 N*mm, drag: 40 N*mm*ms/rad}"
-    result = solved(alone(MOTOR, bearing, "run.duration=40 ms"), solver)
+    result = solved(alone(MOTOR, bearing, FINE, "run.duration=40 ms"), solver)
     slope = STALL / NO_LOAD + 40.0
     due = (STALL - 4.0) / slope * (1.0 - np.exp(-result.time * slope / INERTIA))
-    assert np.abs(spin(result, "feed") - due).max() < 1e-4 * due.max()
+    assert np.abs(spin(result, "feed") - due).max() < 0.2 * CREEP
     roller = result.model.roller("feed")
     torque, power = axle_torque(result, roller), drive_power(result, roller)
     assert torque is not None and power is not None
@@ -59,12 +62,12 @@ def test_a_motor_runs_where_its_line_meets_the_brake(solver: str) -> None:
 def test_a_motor_stalls_where_the_brake_takes_all_its_torque(solver: str) -> None:
     """Just below the torque at rest it turns, just above it creeps slower than the bearing's creep."""
     below, above = (
-        solved(alone(MOTOR, f"rollers.feed.bearing={{torque: {brake} N*mm}}"), solver)
+        solved(alone(MOTOR, FINE, f"rollers.feed.bearing={{torque: {brake} N*mm}}"), solver)
         for brake in (19.0, 21.0)
     )
     due = NO_LOAD * (1.0 - 19.0 / STALL) * (1.0 - np.exp(-below.time / TAU))
-    assert np.abs(spin(below, "feed") - due).max() < 2e-4 * NO_LOAD and below.events == []
-    assert 0.0 < spin(above, "feed")[-1] < 1e-4
+    assert np.abs(spin(below, "feed") - due).max() < CREEP and below.events == []
+    assert 0.0 < spin(above, "feed")[-1] < CREEP
     (stall,) = above.events
     assert stall["kind"] == "stall" and stall["roller"] == "feed" and stall["duration_ms"] > 9.0
     assert stall["torque_n_mm"] == pytest.approx(STALL, rel=1e-3)
@@ -88,9 +91,10 @@ def test_a_table_and_a_lower_voltage_are_what_the_line_is() -> None:
 @pytest.mark.parametrize("solver", SOLVERS)
 def test_a_limiter_gives_its_torque_and_then_holds(solver: str) -> None:
     drive = "rollers.feed.drive={profile: [[0 ms, 0 rad/s], [1 ms, 60 rad/s]]}"
-    result = solved(alone(drive, "rollers.feed.limiter={torque: 15 N*mm}"), solver)
+    made = alone(drive, FINE, "rollers.feed.limiter={torque: 15 N*mm}", "run.print_step=0.1 ms")
+    result = solved(made, solver)
     turns = spin(result, "feed")
-    assert turns[3] - turns[2] == pytest.approx(15.0 / FEED, rel=1e-3)  # by its torque alone
+    assert turns[30] - turns[20] == pytest.approx(15.0 / FEED, rel=1e-3)  # by its torque alone
     assert turns[-3:] == pytest.approx(0.06, rel=1e-4)
     (slip,) = result.events
     assert slip["kind"] == "limiter_slips"
@@ -121,24 +125,26 @@ def test_a_prescribed_shaft_gives_each_roller_its_speed() -> None:
 
 @pytest.mark.parametrize("solver", SOLVERS)
 def test_a_stepper_keeps_in_step_below_its_torque(solver: str) -> None:
-    result = solved(alone(STEPPER % "[[0 ms, 0 rad/s], [9 ms, 20 rad/s]]"), solver)
+    profile = "[[0 ms, 0 rad/s], [20 ms, 20 rad/s]]"
+    result = solved(alone(STEPPER % profile, "run.duration=18 ms"), solver)
     lost = lost_steps(result, result.model.roller("feed"))
     assert lost is not None and lost[0] == 0 and result.events == []
     assert result.behind is not None
-    # it is behind by what speeds it up: sin(50 e) = J a / T
-    due = np.arcsin(FEED * 0.02 / 9.0 / 20.0) / 50.0
-    assert result.behind[8, 0] == pytest.approx(due, rel=0.05)
+    # it is behind by what speeds it up, sin(50 e) = J a / T; what it swings by falls with exp(-0.3 t)
+    due = np.arcsin(FEED * 0.001 / 20.0) / 50.0
+    assert result.behind[-1, 0] == pytest.approx(due, rel=0.01)
 
 
 @pytest.mark.parametrize("solver", SOLVERS)
 def test_a_stepper_that_is_held_loses_the_periods_of_its_field(solver: str) -> None:
-    """The field turns by three periods, 2 pi / 50 each, while a bearing of more than 20 N mm holds it."""
+    """The field turns by three periods, 2 pi / 50 each, while a bearing holds it, by more than 20 N mm and
+    600 N mm ms/rad times the speed of the field."""
     turns = 3 * 2.0 * np.pi / 50.0
     profile = f"[[0 ms, 0 rad/s], [4 ms, {1e3 * turns / 4.0} rad/s], [8 ms, 0 rad/s]]"
-    result = solved(alone(STEPPER % profile, "rollers.feed.bearing={torque: 60 N*mm}"), solver)
+    result = solved(alone(STEPPER % profile, "rollers.feed.bearing={torque: 100 N*mm}"), solver)
     lost = lost_steps(result, result.model.roller("feed"))
     assert lost is not None and lost[0] == 12
-    assert result.behind is not None and result.behind[-1, 0] == pytest.approx(turns, rel=2e-3)
+    assert result.behind is not None and result.behind[-1, 0] == pytest.approx(turns, rel=3e-3)
     assert "lost_steps" in {event["kind"] for event in result.events}
 
 

@@ -41,6 +41,9 @@ PIECES = {
     # tests/solvers/test_measured_friction.py looks at such blocks in Exudyn, too
     ("verify/aslant", "exudyn"): ("run.duration=20 ms",),
     ("pile", "exudyn"): ("run.duration=1 ms",),
+    # tests/solvers/test_motors.py has both solvers against closed forms
+    ("retard", "exudyn"): ("run.duration=2 ms", "run.tolerance=0.01"),
+    ("stall", "exudyn"): ("run.duration=10 ms", "run.tolerance=0.01"),
     # what tests/solvers/test_spring_plate.py and tests/solvers/test_roller_plate.py look at in Exudyn, too
     ("spring_plate", "exudyn"): ("run.duration=15 ms",),
     ("peel", "exudyn"): ("run.duration=5 ms",),  # all of it before a release: tests/solvers/test_arms.py
