@@ -81,6 +81,7 @@ class Arm(_Arm):
         torque: str = ...,
         stiffness: str = ...,
         damping: str = ...,
+        stops: Mapping[str, Any] | None = ...,
     ) -> None: ...
 
 class Clamp(_Clamp):
@@ -350,6 +351,7 @@ class Press(_Press):
         free_length: str = ...,
         damping_ratio: float | str = ...,
         carrier_mass: str | None = ...,
+        stops: Mapping[str, Any] | None = ...,
     ) -> None: ...
 
 class Probe(_Probe):

@@ -10,6 +10,7 @@ from mdlgen.geometry.arrays import Floats
 from mdlgen.geometry.solids import BOX, CORNERS, Solid, cylinder, slice_
 from mdlgen.model.covers import covered, lower_cover
 from mdlgen.model.frames import frame
+from mdlgen.model.moved import lower_stops
 from mdlgen.model.parameters.machine import center_rows, spring_rows, start_row
 from mdlgen.model.parameters.names import NAMED_AXES
 from mdlgen.model.parts.kind import SLACK, BodyRow, Boxes, Drawn, Kind
@@ -281,6 +282,7 @@ def _arm(roller: Roller) -> ArmPart:
         stiffness=spec.stiffness,
         damping=spec.damping,
         sprung=spec.sprung,
+        stops=lower_stops(spec.stops),
     )
 
 

@@ -7,6 +7,7 @@ import numpy as np
 from mdlgen.errors import SpecError
 from mdlgen.model import meshes
 from mdlgen.model.frames import frame
+from mdlgen.model.moved import lower_stops
 from mdlgen.model.press import balance
 from mdlgen.model.press.before import Before
 from mdlgen.model.press.faces import (
@@ -90,6 +91,8 @@ def _wheel(roller: Roller, towards: Floats, contacts: Contacts, row: int) -> Whe
 
 
 def _slide(spec: PressSpec, mass: float, carrier: float, touch: float, start: float) -> Press:
+    if spec.stops is not None:  # the spring may push it onto one
+        start = min(max(start, spec.stops.low), spec.stops.high)
     return Press(
         direction=np.array(spec.direction),
         stiffness=spec.stiffness,
@@ -100,6 +103,7 @@ def _slide(spec: PressSpec, mass: float, carrier: float, touch: float, start: fl
         carrier_mass=carrier,
         touch=touch,
         start=start,
+        stops=lower_stops(spec.stops),
     )
 
 

@@ -10,7 +10,7 @@ import numpy as np
 from mdlgen.geometry.arrays import Floats as Floats
 from mdlgen.geometry.arrays import Ints as Ints
 from mdlgen.model.tables.bodies import Frozen
-from mdlgen.model.tables.moving import MovingPart
+from mdlgen.model.tables.moving import MovingPart, StopsPart
 
 
 @dataclass(frozen=True)
@@ -26,6 +26,7 @@ class Press(Frozen):
     carrier_mass: float  # [g]
     touch: float  # where the spring has its free length [mm]
     start: float  # static equilibrium at the start [mm]
+    stops: StopsPart | None = None  # from the centre as given
 
 
 @dataclass(frozen=True)
@@ -49,6 +50,7 @@ class ArmPart(Frozen):
     stiffness: float  # [N mm/rad]
     damping: float  # [N mm ms/rad]
     sprung: bool  # whether it has a spring or damping
+    stops: StopsPart | None = None  # from where it is as the run begins
 
 
 @dataclass(frozen=True)
