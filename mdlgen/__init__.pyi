@@ -89,6 +89,7 @@ class Arm(_Arm):
         damping: str = ...,
         start: str = ...,
         start_speed: str = ...,
+        stops: Mapping[str, Any] | None = ...,
     ) -> None: ...
 
 class Bearing(_Bearing):
@@ -402,6 +403,7 @@ class Press(_Press):
         start: str | None = ...,
         start_speed: str = ...,
         carrier_mass: str | None = ...,
+        stops: Mapping[str, Any] | None = ...,
     ) -> None: ...
 
 class Probe(_Probe):

@@ -253,13 +253,7 @@ SUMMARY: dict[str, tuple[str, str]] = {
             "angle_deg": ("deg", "turn about its pivot at the end, from where it is given"),
             "max_angle_deg": ("deg", "the greatest of the stored times"),
             "min_angle_deg": ("deg", "the least of the stored times"),
-        }.items()
-    },
-    **{
-        f"{part}.NAME.{key}": words
-        for part in ("guides", "meshes")
-        for key, words in {
-            "slide_mm": ("mm", "way along its slide at the end, from where it is given"),
+            "slide_mm": ("mm", "way along its slide at the end, or that of a press, from where it is given"),
             "max_slide_mm": ("mm", "the greatest of the stored times"),
             "min_slide_mm": ("mm", "the least of the stored times"),
         }.items()

@@ -17,3 +17,10 @@ def refuse_moving(model: Model, who: str) -> None:
             f"not written yet. Run it locally, or leave the {word} out for the part as it begins",
             (kind_of(part).table, part.name, word),
         )
+    for part in model.stopped:
+        word = "arm" if part.press is None else "press"
+        raise RefusedError(
+            f"{who}: the {word} of {part.name} has stops, which are not written yet. Run it locally, or "
+            "leave the stops out",
+            (kind_of(part).table, part.name, word, "stops"),
+        )

@@ -19,11 +19,11 @@ from typing import NamedTuple
 
 import numpy as np
 
-from mdlgen.mechanics.arm import AXIAL
+from mdlgen.mechanics.arm import AXIAL, INERTIA
 from mdlgen.mechanics.laws import damping_share, sign_step
 from mdlgen.mechanics.vector import add, cross, dot, exp_rotation, mat, matmul, rotate, scale, sub, three, vec
 from mdlgen.model.limits import MOST_CORNERS, MOST_PLACES
-from mdlgen.model.tables import Floats, MovingPart
+from mdlgen.model.tables import Floats, MovingPart, StopsPart
 from mdlgen.program.kernel import BORROWS, njit
 
 # Of `swings`: from GATE on a law of time moves the body.
@@ -81,11 +81,17 @@ def gate(row: np.void, moving: MovingPart, length: float, mass: float, time: flo
         row["swings"], row["carries"], row["axis"] = 2, 1, moving.axis
         row["mass"], row["hang"] = 0.0, moving.moment * mass * length
     if moving.stops is not None:
-        own = moving.stops
-        beta = damping_share.py_func(own.restitution)
-        along = 1.0 if moving.turns else length
-        omega = math.sqrt(own.stiffness * unit / inertia)
-        row["stops"] = (own.low * along, own.high * along, own.stiffness * unit, beta, BLUNT * omega)
+        put_stops(row, moving.stops, 1.0 if moving.turns else length, unit)
+
+
+def put_stops(row: np.void, stops: StopsPart, along: float, stiff: float, start: float = 0.0) -> None:
+    """Fills `stops` of a body record whose `press` is filled; `along` and `stiff` are a unit of a place and
+    of a stiffness in the solver's units, `start` is the place as the run begins."""
+    beta = damping_share.py_func(stops.restitution)
+    stiffness = stops.stiffness * stiff
+    omega = math.sqrt(stiffness / row["press"][INERTIA])
+    low, high = ((end - start) * along for end in (stops.low, stops.high))
+    row["stops"] = (low, high, stiffness, beta, BLUNT * omega)
 
 
 def write(row: np.void, corners: Floats) -> None:
@@ -98,7 +104,8 @@ def write(row: np.void, corners: Floats) -> None:
 def command(bodies: np.ndarray, row: int, t: float, value: float, duration: float) -> None:
     """Sends the gate of a body record to a place: rewrites its law from the time t on. In `duration` it goes
     from where it is at t, with the speed that it has there, to `value`, where it stands. All in the solver's
-    units. The law before t is lost: a step that is taken afterwards must not begin before t.
+    units. The law before t is lost: a step that is taken afterwards must not begin before t. Where sheets
+    sleep, a run works on a copy of the records (lattice.integrate.awake), which needs the same command.
 
     Raises ValueError where the body is no gate or the duration is not above 0.
     """

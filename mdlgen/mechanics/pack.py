@@ -15,7 +15,7 @@ from mdlgen.mechanics.axle import AXLE
 from mdlgen.mechanics.curve import follow
 from mdlgen.mechanics.driven import drive
 from mdlgen.mechanics.frame import LAW_DYNAMIC, LAW_STATIC
-from mdlgen.mechanics.gate import gate
+from mdlgen.mechanics.gate import gate, put_stops
 from mdlgen.mechanics.laws import damping_share
 from mdlgen.mechanics.measured import FACES, FRICTION, MORE_CD, MORE_MD, POWER, REFERENCE
 from mdlgen.mechanics.mesh_tables import mesh_numbers
@@ -71,6 +71,8 @@ def pack_bodies(model: Model, layout: np.dtype, units: Units = OWN, driven: bool
             drive(row, roller, units.ms, mm)
         piece = rim(row, roller, piece)
         arm(row, roller, mm, g, units.ms)
+        if roller.arm is not None and roller.arm.stops is not None:
+            put_stops(row, roller.arm.stops, 1.0, mm, roller.arm.angle)
     _turn_together(model, bodies, g * mm**2, driven)
     for plate, spring in model.plates:
         _press(bodies[plate.body], spring, plate.sliding_mass, units)
@@ -96,6 +98,8 @@ def _press(row: np.void, spring: Press, mass: float, units: Units) -> None:
     force = spring.preload - spring.stiffness * (spring.start - spring.touch)
     stiffness, damping = spring.stiffness * units.per_mm, spring.damping * units.ms * units.per_mm
     row["press"][:AXIAL] = (stiffness, damping, force, mass * units.g)
+    if spring.stops is not None:
+        put_stops(row, spring.stops, units.mm, units.per_mm, spring.start)
 
 
 def _turn_together(model: Model, bodies: np.ndarray, inertia: float, driven: bool) -> None:

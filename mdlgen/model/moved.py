@@ -6,7 +6,7 @@ import numpy as np
 
 from mdlgen.model.rotations import matrices
 from mdlgen.model.tables import Bodies, Floats, MovingPart, StopsPart
-from mdlgen.spec.moving import Pivot, Slide
+from mdlgen.spec.moving import Pivot, PivotStops, Slide, SlideStops
 
 _TURN = np.radians(5.0)  # from one angle at which bounds are taken to the next, at most
 # A stop yields: how far beyond it a part may be, in times of the way between both. A convention; a run ends
@@ -42,13 +42,13 @@ def lower_motion(motion: Pivot | Slide | None, mass: float) -> MovingPart | None
         damping=motion.damping,
         force=motion.torque if isinstance(motion, Pivot) else motion.force,
         moment=moment,
-        stops=_stops(motion),
+        stops=lower_stops(motion.stops),
     )
 
 
-def _stops(motion: Pivot | Slide) -> StopsPart | None:
-    own = motion.stops
-    return None if own is None else StopsPart(own.low, own.high, own.stiffness, own.restitution)
+def lower_stops(stops: PivotStops | SlideStops | None) -> StopsPart | None:
+    """Of a pivot, a slide, an arm or a press; None: there are none."""
+    return None if stops is None else StopsPart(stops.low, stops.high, stops.stiffness, stops.restitution)
 
 
 def displaced(moving: MovingPart, places: Floats, points: Floats) -> Floats:

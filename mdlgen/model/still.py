@@ -32,3 +32,7 @@ def refuse_moving(model: Model, who: str) -> None:
                 f"{least:.3g} mm or more is modelled",
                 path,
             )
+    for part in model.stopped if model.run.analysis == "static" else ():
+        word = "arm" if part.press is None else "press"
+        path = (kind_of(part).table, part.name, word, "stops")
+        raise RefusedError(f"{who}: a static analysis with stops ({part.name}) is not there yet", path)

@@ -26,7 +26,16 @@ from mdlgen.spec.fields import (
 from mdlgen.spec.guide import check_edge
 from mdlgen.spec.machine_part import PARALLEL, MachinePart, cosine, not_modelled, on_its_end
 from mdlgen.spec.motor import Bearing, Limiter, Motor
-from mdlgen.spec.moving import MovingPart, Pivot, Slide, pivot_field, slide_field
+from mdlgen.spec.moving import (
+    MovingPart,
+    Pivot,
+    PivotStops,
+    Slide,
+    SlideStops,
+    check_stops,
+    pivot_field,
+    slide_field,
+)
 from mdlgen.spec.quantities import combined, default, quantity, reading
 from mdlgen.spec.rim import Rim
 from mdlgen.spec.rows import Mirror, Repeat
@@ -150,6 +159,14 @@ class Press(Strict):
         description="mass of the slide between spring and roller; a thousandth of the roller's where left "
         "out. A plate is its own slide; this mass adds to it",
     )
+    stops: SlideStops | None = Field(
+        default=None, description="the two ends of the slide, from where the part is given"
+    )
+
+    @model_validator(mode="after")
+    def _between(self) -> Press:
+        check_stops(self.stops, "mm", 1.0)
+        return self
 
 
 class Arm(Strict):
@@ -184,6 +201,12 @@ class Arm(Strict):
     start_speed: AngularSpeed = Field(
         default=default("0 rad/s"), description="angular speed with which the arm begins"
     )
+    stops: PivotStops | None = Field(default=None, description="the two ends of the turn")
+
+    @model_validator(mode="after")
+    def _between(self) -> Arm:
+        check_stops(self.stops, "deg", math.degrees(1.0))
+        return self
 
     @property
     def sprung(self) -> bool:

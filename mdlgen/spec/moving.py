@@ -129,7 +129,7 @@ class SlideStops(Stops):
     )
 
 
-def _ends(stops: PivotStops | SlideStops | None, unit: str, scale: float) -> None:
+def check_stops(stops: PivotStops | SlideStops | None, unit: str, scale: float) -> None:
     """Raises where the part, which begins at 0, does not begin between its stops."""
     if stops is not None and not (stops.low <= 0.0 <= stops.high and stops.low < stops.high):
         raise fail(
@@ -174,7 +174,7 @@ class Pivot(_Motion):
 
     @model_validator(mode="after")
     def _between(self) -> Pivot:
-        _ends(self.stops, self.unit, self.scale)
+        check_stops(self.stops, self.unit, self.scale)
         if self.center is not None and self.inertia is None:
             raise fail("center is of a part that is free to turn, which needs inertia", within=("center",))
         return self
@@ -211,7 +211,7 @@ class Slide(_Motion):
 
     @model_validator(mode="after")
     def _between(self) -> Slide:
-        _ends(self.stops, self.unit, self.scale)
+        check_stops(self.stops, self.unit, self.scale)
         if self.mass is not None and self.stops is None:
             raise fail("a part that is free to slide needs stops, which say how far it may come")
         return self

@@ -8,6 +8,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 from ran import solved
+from scipy.integrate import solve_ivp
 from solids import binary, prism
 
 from mdlgen.checks import lints
@@ -330,6 +331,45 @@ def test_the_sample_sends_the_first_note_straight_on_and_the_second_one_up():
     assert np.degrees(gate[[0, k, -1]]) == pytest.approx((0.0, 0.0, 20.0), abs=1e-9)
     assert abs(first[-1, 2]) < 1.0 and first[-1, 0] > 100.0
     assert second[-1, 2] > 10.0 and second[-1, 0] > 40.0
+
+
+ENDS = """
+rollers:
+  bob: {center: [4 mm, 3 mm, 60 mm], axis: y, radius: 20 mm, width: 20 mm, mass: 10 g, MOTION}
+planes:
+  far: {center: [0 mm, 0 mm, -99 mm], normal: z, size: [10 mm, 10 mm, 1 mm]}
+"""
+STOPPED = "stops: {low: -1 mm, high: 2 mm, stiffness: 40 N/mm, restitution: 0.5}"
+
+
+@pytest.mark.parametrize("solver", SOLVERS)
+def test_presses_and_arms_have_stops_too(solver: str):
+    text = HEAD.replace("-9.81", "0") + ENDS + FLOOR.replace("PLATE", "far")
+    text += "run: {duration: 50 ms, step: 0.05 ms, print_step: 1 ms, prune: false}\n"
+    press = f"press: {{direction: x, stiffness: 0.02 N/mm, preload: 0.1 N, {STOPPED}}}"
+    pressed = solved(model(text.replace("MOTION", press)), solver)
+    # the spring holds it on the stop, where it begins; it yields by force over stiffness
+    way = pressed.position[:, 1, 0] - 4.0
+    depth = (0.1 - 0.02 * 2.0) / 40.0
+    assert way[0] == pytest.approx(2.0, abs=1e-12)
+    assert way[-1] == pytest.approx(2.0 + depth, abs=0.2 * depth)
+    arm = "arm: {pivot: [0 mm, 0 mm, 0 mm], mass: 20 g, torque: 80 N*mm, STOPS}"
+    stops = "stops: {low: -0.01 rad, high: 0.05 rad, stiffness: 200000 N*mm/rad, restitution: 0.5}"
+    swung = solved(model(text.replace("MOTION", arm.replace("STOPS", stops))), solver)
+    turned = np.arctan2(swung.position[:, 1, 0], swung.position[:, 1, 2])
+    inertia = swung.model.rollers[0].swung_inertia
+
+    def rates(_: float, state: np.ndarray) -> list[float]:
+        # Eq. 11 with a sharp sign, beta = (1 - 1/4)/(1 + 1/4)
+        deep = max(state[0] - 0.05, 0.0)
+        return [state[1], (80.0 - 2e5 * deep * (1.0 + 0.6 * np.sign(state[1]))) / inertia]
+
+    expected = solve_ivp(rates, (0.0, 50.0), (0.0, 0.0), t_eval=swung.time, max_step=0.02).y[0]
+    assert expected.max() > 0.05 and expected[11:18].min() < 0.045
+    assert turned - turned[0] == pytest.approx(expected, abs=4e-4)
+    for name in ("motionview", "motionsolve", "msolve"):
+        with pytest.raises(RefusedError, match="the press of bob has stops"):
+            emitter(name).emit(pressed.model)
 
 
 def test_text_deck_and_script_refuse_what_moves_by_name():

@@ -22,12 +22,12 @@ def find(model: Model, system: System) -> Mirror | None:
     which one side alone would not. Scenes with air between sheets, measured friction, motors, limiters or
     shafts are not halved, nor are those where a sheet sticks on a roller that the plane cuts, or with
     Poisson's effect, which couples boxes on both sides of the plane, or with parts that turn about a pivot or
-    slide.
+    slide, or with stops.
 
     It goes through the middle of the sheets, between boxes, along one of their edges. Everything is compared:
     bodies, what holds and drives them, contacts, loads, and the forces of the joints of a random state.
     """
-    if not len(model.pairs) or not model.run.symmetry or len(model.corners) or model.gates:
+    if not len(model.pairs) or not model.run.symmetry or len(model.corners) or model.gates or model.stopped:
         return None
     if (model.contacts.air_viscosity > 0.0).any():
         return None  # air presses across the plane

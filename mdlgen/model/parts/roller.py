@@ -11,6 +11,7 @@ from mdlgen.geometry.solids import BOX, CORNERS, Solid, cylinder, slice_
 from mdlgen.model.axles import turning
 from mdlgen.model.covers import covered, lower_cover
 from mdlgen.model.frames import frame
+from mdlgen.model.moved import lower_stops
 from mdlgen.model.parameters.machine import center_rows, spring_rows, start_row
 from mdlgen.model.parameters.names import NAMED_AXES
 from mdlgen.model.parts.kind import SLACK, BodyRow, Boxes, Drawn, Kind
@@ -329,6 +330,7 @@ def _arm(roller: Roller) -> ArmPart:
         sprung=spec.sprung,
         angle=spec.start,
         speed=spec.start_speed,
+        stops=lower_stops(spec.stops),
     )
 
 

@@ -7,6 +7,7 @@ import numpy as np
 from mdlgen.errors import SpecError
 from mdlgen.model import meshes, over_time
 from mdlgen.model.frames import frame
+from mdlgen.model.moved import lower_stops
 from mdlgen.model.press import balance
 from mdlgen.model.press.before import Before
 from mdlgen.model.press.faces import (
@@ -98,6 +99,8 @@ def _wheel(roller: Roller, towards: Floats, contacts: Contacts, row: int) -> Whe
 
 def _slide(spec: PressSpec, mass: float, carrier: float, touch: float, balance: float) -> Press:
     """Of what is in balance at a place, and begins there where the user has not said otherwise."""
+    if spec.stops is not None:  # the spring may push it onto one
+        balance = min(max(balance, spec.stops.low), spec.stops.high)
     return Press(
         direction=np.array(spec.direction),
         stiffness=spec.stiffness,
@@ -111,6 +114,7 @@ def _slide(spec: PressSpec, mass: float, carrier: float, touch: float, balance: 
         begins=spec.start,
         speed=spec.start_speed,
         balance=None if spec.start is None else balance,
+        stops=lower_stops(spec.stops),
     )
 
 

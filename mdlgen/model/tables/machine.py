@@ -11,7 +11,7 @@ from mdlgen.geometry.arrays import Floats as Floats
 from mdlgen.geometry.arrays import Ints as Ints
 from mdlgen.model.tables.axle import FREE, AxlePart
 from mdlgen.model.tables.bodies import Frozen
-from mdlgen.model.tables.moving import MovingPart
+from mdlgen.model.tables.moving import MovingPart, StopsPart
 
 
 @dataclass(frozen=True)
@@ -30,6 +30,7 @@ class Press(Frozen):
     begins: float | None = None  # from `touch`, where the user gave it [mm]; None: in balance
     speed: float = 0.0  # along `direction` as the run begins [mm/ms]
     balance: float | None = None  # static equilibrium, where the run does not begin there [mm]
+    stops: StopsPart | None = None  # from the centre as given
 
     @property
     def off(self) -> float:
@@ -60,6 +61,7 @@ class ArmPart(Frozen):
     sprung: bool  # whether it has a spring or damping
     angle: float = 0.0  # by which it is turned as the run begins, from the roller's centre as given [rad]
     speed: float = 0.0  # as the run begins [rad/ms]
+    stops: StopsPart | None = None  # from the roller's centre as given
 
 
 @dataclass(frozen=True)

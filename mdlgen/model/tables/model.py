@@ -209,6 +209,16 @@ class Model(Frozen):
         parts = (*self.planes, *self.guides, *self.meshes)
         return tuple((part, part.moving) for part in parts if part.moving is not None)
 
+    @cached_property
+    def stopped(self) -> tuple[RollerPart | PlanePart, ...]:
+        """The rollers and planes whose arm or press has stops."""
+        return tuple(
+            part
+            for part in (*self.rollers, *self.planes)
+            for own in (part.press, part.arm if isinstance(part, RollerPart) else None)
+            if own is not None and own.stops is not None
+        )
+
     @property
     def pair_friction(self) -> Floats:
         """Friction of each kept pair in times that of its contact, (pairs,)."""
