@@ -12,6 +12,7 @@ from mdlgen.bench.suites.validation import (
     belts,
     bending,
     edges,
+    passing,
     plates,
     poisson,
     rigid,
@@ -21,7 +22,7 @@ from mdlgen.bench.suites.validation import (
     yielding,
 )
 
-GROUPS = (bending, plates, poisson, swinging, yielding, belts, rolling, rigid, rubbing, edges)
+GROUPS = (bending, plates, poisson, swinging, yielding, belts, rolling, rigid, rubbing, edges, passing)
 
 
 def cases(solver: str, reference: str, quick: bool) -> list[BenchCase]:
