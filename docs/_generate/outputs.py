@@ -64,8 +64,11 @@ SUMMARY: dict[str, tuple[str, str]] = {
         "the part of `energy.dissipated` that sheets took as they yielded; null where none can",
     ),
     "energy.driven": ("N mm", "work of drives and loads"),
-    "energy.entered": ("N mm", "energy with which sheets came in after the start, where some do"),
-    "energy.left": ("N mm", "energy with which sheets left, where some do"),
+    "energy.entered": (
+        "N mm",
+        "energy with which sheets came in later, null where none comes or leaves",
+    ),
+    "energy.left": ("N mm", "energy with which sheets left, null where none comes or leaves"),
     "energy.balance_error": (
         "",
         "error of the energy balance over `energy.scale`; positive: a gain",

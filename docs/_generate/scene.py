@@ -213,6 +213,8 @@ def _from_schema(schema: dict[str, Any]) -> str:
             return "direction: `x`, `-z`, ... or a vector `[1, 0, 0]`"
         if "minimum" in one:
             return f"number, or two, {one['minimum']:g} to {one['maximum']:g}"
+        if schema["anyOf"][1:] == [{"type": "array", "items": one}]:
+            return "text, or a list of texts"
         return "number, or text such as " + " or ".join(
             f"`{example}`" for example in schema.get("examples", []) if isinstance(example, str)
         )

@@ -33,8 +33,8 @@ def bench(
         list[str] | None,
         typer.Argument(
             metavar="SUITE ...",
-            help="transport, elastica, impact, friction, flight, scaling, skip, feeder, piles, stability, "
-            "validation, core: all if left out; or campaign, scenes drawn at random; or tuning, the numbers "
+            help="transport, elastica, impact, friction, flight, scaling, skip, feeder, piles, streams, "
+            "stability, validation, core: all if left out; or campaign, scenes drawn at random; or tuning, the numbers "
             "of the solver lattice halved and doubled.",
             autocompletion=completion.suites,
         ),

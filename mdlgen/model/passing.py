@@ -19,7 +19,7 @@ def planes_out(sheet: Sheet) -> tuple[tuple[int, float, float], ...]:
     does not come in."""
     found = []
     for out in sheet.out:
-        if out.axis is not None and out.at is not None:
+        if out.axis is not None:
             axis = "xyz".index(out.axis)
             found.append((axis, float(out.at), math.copysign(1.0, out.at - sheet.center[axis])))
     return tuple(found)

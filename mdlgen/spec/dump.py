@@ -88,8 +88,5 @@ def _put(data: Any, path: tuple[Any, ...], formula: str, new: bool) -> bool:
             return False
     if isinstance(node, dict) and not new and path[-1] not in node:
         return False
-    if isinstance(node, str):  # a way to leave, which is a text
-        owner[path[-2]] = f"{node.partition('=')[0]}= {formula}"
-        return True
     node[path[-1]] = formula
     return True

@@ -1,5 +1,4 @@
-"""Sheets that come in and leave in a run: closed forms, shifts in time, energy, resumed runs, both
-solvers."""
+"""Sheets that come in and leave in a run: closed forms, shifts in time, energy, resumed runs, two solvers."""
 
 from __future__ import annotations
 
@@ -150,7 +149,7 @@ def test_a_rule_lets_sheets_in() -> None:
 
 
 def test_halved_streams(monkeypatch: pytest.MonkeyPatch) -> None:
-    """One side of a symmetric scene, and both, which the solver takes where it is told to."""
+    """One side of a symmetric scene, and both, which run.symmetry asks for."""
     one = mdlgen.solve(model(DRAWN, "run.duration=60 ms"), "lattice")
     both = mdlgen.solve(model(DRAWN, "run.duration=60 ms", "run.symmetry=false"), "lattice")
     assert one.halved and not both.halved

@@ -9,7 +9,18 @@ from mdlgen.errors import SpecError, did_you_mean
 from mdlgen.registry import AUTO
 
 SUITES = (
-    *("transport", "elastica", "impact", "friction", "flight", "scaling", "skip", "feeder", "piles"),
+    *(
+        "transport",
+        "elastica",
+        "impact",
+        "friction",
+        "flight",
+        "scaling",
+        "skip",
+        "feeder",
+        "piles",
+        "streams",
+    ),
     *("stability", "validation", "core"),
 )
 

@@ -14,6 +14,7 @@ from mdlgen.bench.suites.validation import (
     driving,
     edges,
     moving,
+    passing,
     plates,
     poisson,
     rigid,
@@ -26,7 +27,7 @@ from mdlgen.bench.suites.validation import (
 
 GROUPS = (
     *(bending, plates, poisson, swinging, yielding, belts, rolling, rigid, rubbing, sticking, edges),
-    *(driving, moving),
+    *(driving, moving, passing),
 )
 
 
