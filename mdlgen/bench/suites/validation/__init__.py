@@ -17,11 +17,12 @@ from mdlgen.bench.suites.validation import (
     rigid,
     rolling,
     rubbing,
+    starting,
     swinging,
     yielding,
 )
 
-GROUPS = (bending, plates, poisson, swinging, yielding, belts, rolling, rigid, rubbing, edges)
+GROUPS = (bending, plates, poisson, swinging, yielding, belts, rolling, rigid, rubbing, edges, starting)
 
 
 def cases(solver: str, reference: str, quick: bool) -> list[BenchCase]:
