@@ -20,6 +20,7 @@ from mdlgen.bench.suites.validation import (
     rigid,
     rolling,
     rubbing,
+    starting,
     sticking,
     swinging,
     yielding,
@@ -27,7 +28,7 @@ from mdlgen.bench.suites.validation import (
 
 GROUPS = (
     *(bending, plates, poisson, swinging, yielding, belts, rolling, rigid, rubbing, sticking, edges),
-    *(driving, moving, passing),
+    *(driving, moving, passing, starting),
 )
 
 
