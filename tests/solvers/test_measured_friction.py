@@ -136,6 +136,40 @@ def test_friction_that_sticks_holds_by_the_face(turn: float) -> None:
         assert moved == pytest.approx(exact, rel=5e-3)
 
 
+@BOTH
+def test_friction_that_sticks_slides_by_its_curve_over_the_speed(solver: str) -> None:
+    friction = {"static": 0.8, "kinetic": 0.2, "stribeck_velocity": "1.2 m/s", "sticking": "40 N/mm"}
+    result = slides(friction, solver, run__duration="20 ms", run__step="0.02 ms")
+
+    def mu(v: float) -> float:
+        return 0.2 + 0.6 * math.exp(-(((v - 1e-3) / 1.2) ** 2))
+
+    _, speed = rubbing.over_speeds(SPEED, mu, G, float(result.time[-1]))
+    # its spring is stretched first, over mu N/k_t = 0.5 um
+    assert result.velocity[-1, 0, 0] == pytest.approx(speed, abs=2.0 * WITHIN * SPEED)
+
+
+@BOTH
+def test_friction_that_sticks_holds_by_the_first_number_of_its_table(solver: str) -> None:
+    """On a slope of 0.3: with 0.4 at rest it stays, though it is 0.1 at 5 mm/s."""
+    table = {"speed": [["1 mm/s", 0.4], ["5 mm/s", 0.1]], "sticking": "400 N/mm"}
+    over = {**on_a_slope(math.atan(0.3), 0), "run__step": "0.05 ms", "run__duration": "20 ms"}
+    x = slides(table, solver, **over).position[:, 0, 0]
+    assert np.ptp(x) < 0.01
+
+
+@BOTH
+@pytest.mark.parametrize(("seed", "stays"), [(1, False), (2, True)])
+def test_friction_that_sticks_scatters_by_the_place(solver: str, seed: int, stays: bool) -> None:
+    """One seed gives more than 0.3, the other one less: on a slope of 0.3 the block stays, or slides."""
+    friction = {"mu": 0.3, "scatter": {"deviation": "30 %", "length": "40 mm", "seed": seed}}
+    run = {"run__duration": "5 ms", "run__step": "0.02 ms", "run__tolerance": 0.01}
+    assert (mean(slides(friction, solver, **run)) > 0.3) == stays
+    over = {**on_a_slope(math.atan(0.3), 0), **run, "run__duration": "20 ms", "run__step": "0.05 ms"}
+    result = slides({**friction, "sticking": "400 N/mm"}, solver, **over)
+    assert (np.ptp(result.position[:, 0, 0]) < 0.01) == stays
+
+
 def test_a_held_block_creeps_as_its_own_direction_has_it() -> None:
     """At 60 % of the limit along CD, which holds more: over v_s/m, by Eq. 12."""
     part, mu_md, mu_cd = 0.6, 0.2, 0.5
