@@ -72,6 +72,11 @@ SCENES = {
     # while a sheet yields, of a halved scene
     "crease": ["run.duration=1 ms", "run.step=0.02 ms", "run.print_step=0.05 ms"],
     "snatch": ["run.duration=3 ms", "run.step=0.1 ms", "run.print_step=0.1 ms"],
+    # while a gate turns
+    "diverter": [
+        "guides.gate.pivot.profile=[[0 ms, closed], [5 ms, open]]",
+        *("run.duration=4 ms", "run.step=0.05 ms", "run.print_step=0.2 ms"),
+    ],
 }
 SHORT = ["run.duration=12 ms", "run.step=0.1 ms", "run.print_step=0.4 ms"]
 # the uppermost note slides, the others stick
