@@ -83,6 +83,15 @@ class Parts:
         self._reacting = reacting
         if reacting is not None:
             reacting.follow(self.assembly.system, ~self._gone)
+            reacting.enter = self._enter
+
+    def _enter(self, sheets: tuple[int, ...], t: float) -> None:
+        """The first of these that has not come yet, nor is about to, comes in at a time [s]."""
+        waits = self._coming()
+        for sheet in sheets:
+            if waits[sheet] and math.isinf(self._enters[sheet]):
+                self._enters[sheet] = t
+                return
 
     def begin(self) -> Assembly:
         """The first part."""

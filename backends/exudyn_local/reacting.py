@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from typing import Any
 
 import numpy as np
@@ -27,6 +28,7 @@ class Reacting:
         self.machine = Machine(model, 0.0)
         self._commands = Commands(model, Units(length=MM, time=MS))
         self._bodies = system.bodies.copy()
+        self.enter: Callable[[tuple[int, ...], float], None] = lambda sheets, t: None
 
     def until(self, t: float) -> float:
         """Up to which time from t on the next step may go [s]."""
@@ -35,7 +37,10 @@ class Reacting:
     def look(self, t: float) -> bool:
         """Carries out what is to be done at a time [s]; whether something was. Raises RunawayError."""
         orders = self.machine.look(t / MS, self._h / MS, self._poses())
-        ordered = [order for order in orders if order.kind != "end"]
+        for order in orders:
+            if order.kind == "enter":
+                self.enter(order.sheets, t)
+        ordered = [order for order in orders if order.kind not in ("end", "enter")]
         for order in ordered:
             grown = self._commands.order(order, t / MS, self._system.bodies)
             if grown:

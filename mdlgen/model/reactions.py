@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from mdlgen.model.tables import Order, Reactions, RulePart, SensorPart
-from mdlgen.spec.reacting import COMMANDED, seen, sense, states
+from mdlgen.spec.reacting import COMMANDED, entering, place, seen, sense, states
 from mdlgen.spec.rule import Rule
 from mdlgen.spec.scene import Scene
 from mdlgen.spec.sensor import REACH
@@ -40,16 +40,25 @@ def _sensor(scene: Scene, name: str, numbers: dict[str, int]) -> SensorPart:
 
 def _rule(scene: Scene, rule: Rule) -> RulePart:
     orders: list[Order] = []
+    numbers = {name: k for k, name in enumerate(sorted(scene.sheets))}
     for kind, of in COMMANDED.items():
         for pattern, given in getattr(rule.do, kind).items():
             for name in of(scene, pattern, ()):
+                if kind == "move":
+                    orders.append(Order(kind, name, place(scene, name, given.to, ()), given.in_))
+                    continue
                 if kind != "speed":
                     orders.append(Order(kind, name, given, 0.0))
                     continue
                 speed = given.speed
+                if speed is not None and pattern in scene.shafts:
+                    speed *= scene.shafts[pattern].rollers[name]
                 if speed is None:
                     speed = sense(scene, name) * given.surface_speed / scene.rollers[name].radius
                 orders.append(Order(kind, name, speed, given.ramp))
+    for name in rule.do.enter:
+        sheets = tuple(numbers[sheet] for sheet in entering(scene, name, ()))
+        orders.append(Order("enter", name, 0.0, 0.0, sheets))
     if rule.do.go is not None:
         orders.append(Order("go", rule.do.go, 0.0, 0.0))
     if rule.do.end:

@@ -7,6 +7,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from mdlgen.mechanics.arm import FORCE_0
+from mdlgen.mechanics.gate import command
 from mdlgen.model.limits import MOST_CORNERS
 from mdlgen.model.tables import Model, Order
 
@@ -27,7 +28,7 @@ class Commands:
 
     def __init__(self, model: Model, units: Units):
         self._units = units
-        self._parts = {part.name: part for part in (*model.rollers, *model.planes)}
+        self._parts = {part.name: part for part in model.machine}
         self._ordered: dict[int, dict[str, Any]] = {}  # fields of the records of bodies
         self._preload: dict[int, float] = {}  # [N]
 
@@ -39,6 +40,11 @@ class Commands:
         ordered, grown = self._ordered.setdefault(part.body, {}), 0.0
         if order.kind == "speed":
             ordered["corners"], ordered["drive"] = self._speed(row, order, t)
+        elif order.kind == "move":
+            along = 1.0 if part.moving.turns else self._units.length
+            time = self._units.time
+            command(bodies, part.body, t * time, order.value * along, order.ramp * time)
+            ordered["corners"], ordered["drive"] = int(row["corners"]), row["drive"].copy()
         else:
             press = row["press"].copy()
             if order.kind == "torque":

@@ -381,6 +381,10 @@ def in_words(order: Order) -> str:
         return f"{order.name} pressed by {order.value:.6g} N"
     if order.kind == "torque":
         return f"arm of {order.name} to {order.value:.6g} N*mm"
+    if order.kind == "move":
+        return f"{order.name} moves to {order.value:.6g} in {order.ramp:g} ms"
+    if order.kind == "enter":
+        return f"the next sheet of {order.name} comes in"
     return f"go to {order.name}" if order.kind == "go" else "end"
 
 

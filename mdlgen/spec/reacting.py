@@ -9,8 +9,11 @@ from typing import TYPE_CHECKING
 from mdlgen.conditions import CLOCK, OF_ROLLER, OF_SENSOR, OF_SHEET, TIME, check, condition
 from mdlgen.formulas import Dimension
 from mdlgen.spec.between import known, matching
+from mdlgen.spec.moving import Pivot, Slide
 from mdlgen.spec.nip import names_of
+from mdlgen.spec.stream import names_of as sheets_of
 from mdlgen.spec.strict import fail
+from mdlgen.units import parse_quantity
 
 if TYPE_CHECKING:
     from mdlgen.spec.scene import Scene
@@ -48,16 +51,71 @@ def seen(scene: Scene, name: str) -> list[str]:
 
 
 def driven(scene: Scene, pattern: str, path: tuple[str | int, ...]) -> list[str]:
-    """The driven rollers that a command means: by name, by pattern, or those of a nip."""
-    if pattern in scene.nips:
+    """The driven rollers that a command means: by name, by pattern, or those of a nip or a shaft."""
+    having = [name for name, roller in scene.rollers.items() if roller.drive is not None]
+    if pattern in scene.shafts:
+        shaft = scene.shafts[pattern]
+        having, names = list(shaft.rollers if shaft.drive is not None else ()), list(shaft.rollers)
+    elif pattern in scene.nips:
         nip = scene.nips[pattern]
         names = list(names_of(pattern, {"lower": nip.lower, "upper": nip.upper}))
     else:
         names = matching(pattern, scene.rollers, path)
-    found = [name for name in names if scene.rollers[name].drive is not None]
+    found = [name for name in names if name in having]
     if not found:
-        others = ", ".join(n for n, roller in scene.rollers.items() if roller.drive is not None)
-        raise fail(f"{pattern} has no drive; those that have one are: {others[:200] or 'none'}", path)
+        others = [*having, *(name for name, shaft in scene.shafts.items() if shaft.drive is not None)]
+        shown = ", ".join(others)[:200] or "none"
+        raise fail(f"{pattern} has no drive; those that have one are: {shown}", path)
+    return found
+
+
+def movable(scene: Scene, pattern: str, path: tuple[str | int, ...]) -> list[str]:
+    """The gates that a command means."""
+    having = {name: part for name, part in scene.machine.items() if _motion(part) is not None}
+    return matching(pattern, having, path)
+
+
+def _motion(part: object) -> Pivot | Slide | None:
+    """How a part moves that is prescribed; None: it does not."""
+    for key in ("pivot", "slide"):
+        motion = getattr(part, key, None)
+        if motion is not None and getattr(motion, motion.inert) is None:
+            return motion
+    return None
+
+
+def place(scene: Scene, name: str, to: str, path: tuple[str | int, ...]) -> float:
+    """The place that a command sends a gate to [rad, mm]. Raises the error for one that there is not, or that
+    is beyond those from which its contacts are chosen."""
+    motion = _motion(scene.machine[name])
+    assert motion is not None, "movable() gives those that move"
+    named = dict(motion.positions or {})
+    if to in named:
+        return named[to]
+    try:
+        value = parse_quantity(to, motion.unit)
+    except ValueError as error:
+        raise fail(
+            f"{to!r} is no name of positions ({', '.join(named) or 'none'}), and {error}", path
+        ) from None
+    places = [0.0, *named.values(), *(at for _, at in motion.profile or ())]
+    if not min(places) <= value <= max(places):
+        raise fail(
+            f"{to} is beyond the places that {name} has, {min(places) * motion.scale:g} to "
+            f"{max(places) * motion.scale:g} {motion.unit}; add it to positions",
+            path,
+        )
+    return value
+
+
+def entering(scene: Scene, name: str, path: tuple[str | int, ...]) -> list[str]:
+    """The sheets of a stream, or the sheet, that a command lets in, one at each time."""
+    waiting = [n for n, sheet in scene.sheets.items() if sheet.by_rule]
+    names = sheets_of(name, {"count": scene.streams[name].count}) if name in scene.streams else [name]
+    found = [n for n in names if n in waiting]
+    if not found:
+        others = [n for n, stream in scene.streams.items() if stream.by_rule]
+        known(name, dict.fromkeys([*others, *waiting]), "stream or sheet with by_rule", path)
     return found
 
 
@@ -77,6 +135,7 @@ COMMANDED: dict[str, Callable[[Scene, str, tuple[str | int, ...]], list[str]]] =
     "speed": driven,
     "press": pressed,
     "torque": on_arms,
+    "move": movable,
 }
 
 
@@ -117,9 +176,13 @@ def _action(scene: Scene, k: int) -> None:
     for kind, of in COMMANDED.items():
         for pattern, given in getattr(rule.do, kind).items():
             names = of(scene, pattern, (*path, kind, pattern))
-            if kind == "speed" and given.surface_speed is not None:
-                for name in names:
+            for name in names:
+                if kind == "speed" and given.surface_speed is not None:
                     _turns(scene, name, (*path, kind, pattern))
+                if kind == "move":
+                    place(scene, name, given.to, (*path, kind, pattern))
+    for k, name in enumerate(rule.do.enter):
+        entering(scene, name, (*path, "enter", k))
     if rule.do.go is not None and not any(rule.do.go in other.in_ for other in scene.rules):
         named = [name for other in scene.rules for name in other.in_]
         known(rule.do.go, dict.fromkeys(named), "state of a rule's `in`", (*path, "go"))
@@ -135,7 +198,8 @@ def _turns(scene: Scene, name: str, path: tuple[str | int, ...]) -> None:
 def sense(scene: Scene, name: str) -> float:
     """1 or -1: the sense in which a drive turns by itself about its axis; 0: it stands."""
     drive = scene.rollers[name].drive
-    assert drive is not None, "driven() gives driven ones"
+    if drive is None:
+        return 0.0  # on a shaft, which has no surface
     rates = [rate for _, rate in drive.profile] if drive.profile is not None else [drive.speed or 0.0]
     fastest = max(rates, key=abs)
     return float(fastest > 0.0) - float(fastest < 0.0)

@@ -7,7 +7,7 @@ from typing import Annotated, Any
 from pydantic import BeforeValidator, ConfigDict, Field, model_validator
 
 from mdlgen.conditions import condition
-from mdlgen.spec.fields import Name, TimeOrZero
+from mdlgen.spec.fields import Name, Time, TimeOrZero
 from mdlgen.spec.machine import AngularSpeed
 from mdlgen.spec.quantities import default, quantity
 from mdlgen.spec.strict import Strict, fail
@@ -45,12 +45,23 @@ class ToSpeed(Strict):
         return self
 
 
+class ToPlace(Strict):
+    """A place that a gate goes to."""
+
+    model_config = ConfigDict(populate_by_name=True)
+
+    to: str = Field(description="a name of its `positions`, or a place, as 20 deg or 4 mm")
+    in_: Time = Field(
+        default=default("5 ms"), alias="in", description="time that it takes; it stands at the end of it"
+    )
+
+
 class Action(Strict):
     """What a rule does: any of these, at once."""
 
     speed: dict[str, Annotated[ToSpeed, _short("speed")]] = Field(
         default_factory=dict,
-        description="drives by roller, pattern or nip, and the speed that each goes to: {entry: 0 rad/s} or "
+        description="drives by roller, pattern, nip or shaft, and the speed that each goes to: {entry: 0 rad/s} or "
         "{entry: {surface_speed: 300 mm/s, ramp: 5 ms}}",
     )
     press: dict[str, Annotated[float, quantity("N")]] = Field(
@@ -62,13 +73,24 @@ class Action(Strict):
         default_factory=dict,
         description="rollers on an arm, and the torque of the arm's spring in its place at the start",
     )
+    move: dict[str, Annotated[ToPlace, _short("to")]] = Field(
+        default_factory=dict,
+        description="guides, planes and meshes with a prescribed `pivot` or `slide`, and the place that each "
+        "goes to: {gate: open} or {gate: {to: 20 deg, in: 8 ms}}",
+    )
+    enter: Annotated[tuple[str, ...], BeforeValidator(_names)] = Field(
+        default=(),
+        strict=False,
+        description="streams, or sheets, with `by_rule`: the next sheet of each comes in",
+    )
     go: Name | None = Field(default=None, description="state that the machine goes to, see `in`")
     end: bool = Field(default=False, description="true: the run ends well, at the next stored time")
 
     @model_validator(mode="after")
     def _something(self) -> Action:
-        if not (self.speed or self.press or self.torque or self.go or self.end):
-            raise fail("a rule has to do something: speed, press, torque, go or end")
+        given = (self.speed, self.press, self.torque, self.move, self.enter, self.go, self.end)
+        if not any(given):
+            raise fail("a rule has to do something: speed, press, torque, move, enter, go or end")
         return self
 
 

@@ -8,6 +8,7 @@ that it has, until it is near enough. A sheet that is to leave at rest does so a
 from __future__ import annotations
 
 import math
+from collections.abc import Iterable
 
 import numpy as np
 from numpy.typing import NDArray
@@ -47,6 +48,13 @@ class Passing:
         """A sheet that has not come yet comes in at a time [ms], not before the one that the pass is at."""
         if math.isnan(self.stays[sheet, 0]):
             self.enters[sheet] = t
+
+    def enter_next(self, sheets: Iterable[int], t: float) -> None:
+        """The first of these that has not come yet, nor is about to, comes in at a time [ms]."""
+        for sheet in sheets:
+            if math.isnan(self.stays[sheet, 0]) and math.isinf(self.enters[sheet]):
+                self.enter(sheet, t)
+                return
 
     def exact(self, t: float) -> float:
         """The time of a sheet that comes in at t, but for round-off; else t."""

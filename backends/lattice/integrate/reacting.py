@@ -51,6 +51,9 @@ class Reacting:
         for order in orders:
             if order.kind == "end":
                 continue
+            if order.kind == "enter":
+                self._passing.enter_next(order.sheets, t)
+                continue
             bodies = self._sleep.work.tables.bodies
             grown = self._commands.order(order, t, bodies)
             if grown:

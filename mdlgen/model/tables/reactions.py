@@ -25,10 +25,11 @@ class SensorPart(Frozen):
 class Order(Frozen):
     """One thing that a rule does."""
 
-    kind: str  # speed, press, torque, go, end
-    name: str  # of the part, or of the state; empty: none
-    value: float  # a speed about the axis [rad/ms], a force [N], a torque [N mm]
+    kind: str  # speed, press, torque, move, enter, go, end
+    name: str  # of the part, the stream or the state; empty: none
+    value: float  # a speed about the axis [rad/ms], a force [N], a torque [N mm], a place [rad, mm]
     ramp: float  # time that it takes [ms]
+    sheets: tuple[int, ...] = ()  # numbers of those of which the next one comes in
 
 
 @dataclass(frozen=True)
