@@ -190,6 +190,23 @@ def test_a_retard_roller_holds_back_with_torque_over_radius(solver: str, force: 
     assert spin(result, "retard")[-1] > 0.019
 
 
+@pytest.mark.parametrize("solver", SOLVERS)
+def test_a_nip_on_a_shaft_slows_its_neighbour(solver: str) -> None:
+    """The retard roller's 5 N mm, by equal radii 5 N mm at the feeding one, leave a motor of 20 N mm
+    1 - 5/20 of its no-load speed; a roller that touches nothing turns with it, twice as fast."""
+    spare = "{center: [90 mm, 0 mm, 30 mm], axis: y, radius: 8 mm, width: 16 mm, mass: 5 g}"
+    motor = "{motor: {torque: 20 N*mm, speed: -30 rad/s}}"
+    made = retarded(
+        *("rollers.feed.drive=null", f"rollers.spare={spare}"),
+        f"shafts={{main: {{rollers: {{feed: 1, spare: 2}}, drive: {motor}}}}}",
+        *("run.duration=24 ms", "run.tolerance=0.01"),
+    )
+    result = solved(made, solver)
+    late = result.time > 18.0
+    assert spin(result, "feed")[late] == pytest.approx(-0.03 * (1.0 - 5.0 / 20.0), rel=0.01)
+    assert spin(result, "spare") == pytest.approx(2.0 * spin(result, "feed"), rel=1e-9, abs=1e-12)
+
+
 def test_a_strong_limiter_holds_the_note_and_the_lint_says_so() -> None:
     from mdlgen.checks import lints
 
