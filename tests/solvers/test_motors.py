@@ -2,13 +2,19 @@
 
 from __future__ import annotations
 
+from pathlib import Path
+
 import numpy as np
 import pytest
-from axles import FEED, OTHER, alone, retarded, spin
+from axles import CONTROLLED, FEED, OTHER, STEPS_ON, alone, retarded, spin
+from cutting import Cut, Cutting, written_with
 from ran import solved
+from same import bits
 
+from mdlgen.backends.lattice import run as lattice
 from mdlgen.errors import RefusedError, SpecError
 from mdlgen.registry import emitter
+from mdlgen.results.io.store import hdf5
 from mdlgen.results.motors import axle_torque, lost_steps
 from mdlgen.results.result import GRIPS, RUBS
 from mdlgen.results.torques import drive_power
@@ -173,6 +179,16 @@ def test_the_error_of_speed_control_is_of_second_order() -> None:
         for h in (0.5, 0.25, 0.125)
     ]
     assert np.all(np.abs(rows[1] - rows[2]) < 0.35 * np.abs(rows[0] - rows[1]))
+
+
+def test_a_stepper_and_speed_control_go_on_to_the_same_bits(tmp_path: Path) -> None:
+    """A stepper that is out of step, and a motor at its limit: their angles are in the checkpoint."""
+    made = alone(STEPS_ON, CONTROLLED, "run.print_step=0.4 ms")
+    whole, provenance = lattice.solve(made), written_with
+    with pytest.raises(Cut):
+        lattice.solve(made, keep=Cutting(tmp_path / "c", provenance, 8))
+    result = lattice.solve(made, keep=Cutting(tmp_path / "c", None, 100))
+    assert bits(hdf5(result)) == bits(hdf5(whole)) and result.behind is not None
 
 
 @pytest.mark.parametrize("solver", SOLVERS)
