@@ -17,7 +17,6 @@ from pathlib import Path
 import numpy as np
 import pytest
 from asked import as_asked
-from axles import ALONE, CONTROLLED, STEPS_ON
 from called import Ended, runner
 from cutting import Cut, Cutting, written_with
 from machines import MACHINE, OVERRUN
@@ -103,8 +102,6 @@ MORE = {
     # a pile that falls asleep, and wakes as another note falls on it; with friction that sticks
     "asleep": (SLEEPY, []),
     "one way": (FORTH_AND_BACK, [*OVERRUN, *SHORT]),
-    # a stepper out of step, and a motor with speed control at its limit
-    "motors": (ALONE, [STEPS_ON, CONTROLLED, "run.print_step=0.4 ms"]),
     "halved": (MACHINE, ["run.step=0.1 ms", "run.print_step=0.1 ms"]),
 }
 

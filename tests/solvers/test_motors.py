@@ -2,13 +2,19 @@
 
 from __future__ import annotations
 
+from pathlib import Path
+
 import numpy as np
 import pytest
-from axles import FEED, OTHER, alone, retarded, spin
+from axles import CONTROLLED, FEED, OTHER, STEPS_ON, alone, retarded, spin
+from cutting import Cut, Cutting, written_with
 from ran import solved
+from same import bits
 
+from mdlgen.backends.lattice import run as lattice
 from mdlgen.errors import RefusedError, SpecError
 from mdlgen.registry import emitter
+from mdlgen.results.io.store import hdf5
 from mdlgen.results.motors import axle_torque, lost_steps
 from mdlgen.results.result import GRIPS, RUBS
 from mdlgen.results.torques import drive_power
@@ -175,6 +181,16 @@ def test_the_error_of_speed_control_is_of_second_order() -> None:
     assert np.all(np.abs(rows[1] - rows[2]) < 0.35 * np.abs(rows[0] - rows[1]))
 
 
+def test_a_stepper_and_speed_control_go_on_to_the_same_bits(tmp_path: Path) -> None:
+    """A stepper that is out of step, and a motor at its limit: their angles are in the checkpoint."""
+    made = alone(STEPS_ON, CONTROLLED, "run.print_step=0.4 ms")
+    whole, provenance = lattice.solve(made), written_with
+    with pytest.raises(Cut):
+        lattice.solve(made, keep=Cutting(tmp_path / "c", provenance, 8))
+    result = lattice.solve(made, keep=Cutting(tmp_path / "c", None, 100))
+    assert bits(hdf5(result)) == bits(hdf5(whole)) and result.behind is not None
+
+
 @pytest.mark.parametrize("solver", SOLVERS)
 @pytest.mark.parametrize("force", [1.0, 2.0, 4.0])
 def test_a_retard_roller_holds_back_with_torque_over_radius(solver: str, force: float) -> None:
@@ -188,6 +204,23 @@ def test_a_retard_roller_holds_back_with_torque_over_radius(solver: str, force: 
     assert pull == pytest.approx(5.0 / 10.0, rel=0.01)
     assert result.contact_friction[late, row, GRIPS].mean() > 1.2 * pull
     assert spin(result, "retard")[-1] > 0.019
+
+
+@pytest.mark.parametrize("solver", SOLVERS)
+def test_a_nip_on_a_shaft_slows_its_neighbour(solver: str) -> None:
+    """The retard roller's 5 N mm, by equal radii 5 N mm at the feeding one, leave a motor of 20 N mm
+    1 - 5/20 of its no-load speed; a roller that touches nothing turns with it, twice as fast."""
+    spare = "{center: [90 mm, 0 mm, 30 mm], axis: y, radius: 8 mm, width: 16 mm, mass: 5 g}"
+    motor = "{motor: {torque: 20 N*mm, speed: -30 rad/s}}"
+    made = retarded(
+        *("rollers.feed.drive=null", f"rollers.spare={spare}"),
+        f"shafts={{main: {{rollers: {{feed: 1, spare: 2}}, drive: {motor}}}}}",
+        *("run.duration=24 ms", "run.tolerance=0.01"),
+    )
+    result = solved(made, solver)
+    late = result.time > 18.0
+    assert spin(result, "feed")[late] == pytest.approx(-0.03 * (1.0 - 5.0 / 20.0), rel=0.01)
+    assert spin(result, "spare") == pytest.approx(2.0 * spin(result, "feed"), rel=1e-9, abs=1e-12)
 
 
 def test_a_strong_limiter_holds_the_note_and_the_lint_says_so() -> None:
