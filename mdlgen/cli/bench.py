@@ -34,8 +34,8 @@ def bench(
         typer.Argument(
             metavar="SUITE ...",
             help="transport, elastica, impact, friction, flight, scaling, skip, feeder, piles, streams, "
-            "stability, validation, core: all if left out; or campaign, scenes drawn at random; or tuning, the numbers "
-            "of the solver lattice halved and doubled.",
+            "stability, validation, core: all if left out; or campaign, scenes drawn at random; or tuning, "
+            "the numbers of the solver lattice halved and doubled.",
             autocompletion=completion.suites,
         ),
     ] = None,

@@ -16,6 +16,8 @@ import mdlgen
 from mdlgen.backends.lattice import run as lattice
 from mdlgen.backends.lattice.integrate.passes import UNSEEN, _Pass, division
 from mdlgen.model.tables import Model
+from mdlgen.report import boxes
+from mdlgen.report.animation import animation
 from mdlgen.results.io.store import hdf5, load
 from mdlgen.results.result import Result
 from mdlgen.spec.load import loads
@@ -192,6 +194,21 @@ def test_requirements_are_of_sheets_while_they_are_there() -> None:
     assert [o.passed for o in result.verdict] == [True] * 4, [str(o) for o in result.verdict]
     missed = mdlgen.solve(model(THROWN, "require=[left below 100 ms]"), "lattice").verdict[0]
     assert not missed.passed and missed.of == "shot_3"
+
+
+def test_sheets_are_drawn_while_they_are_there() -> None:
+    """On the page by times, in a still by what is there; before a run the sheets with which it begins."""
+    made = model(THROWN, "run.duration=60 ms")
+    result = mdlgen.solve(made, "lattice")
+    at = np.arange(len(result.time))
+    rows = animation(result, at, {})["stays"]
+    assert [row[:3] for row in rows] == [[0, 1, 0.0], [1, 1, 30.013], [2, 1, None]]
+    assert rows[0][3] == result.stays[0, 1] and rows[1][3] is None
+    when = np.array(boxes.there(result, at))
+    assert when[0].tolist() == [True, False, False]
+    assert when[result.time == 40.0].tolist() == [[True, True, False]]
+    assert when[result.time == 50.0].tolist() == [[False, True, False]]
+    assert np.array_equal(boxes.at_start(made), [True, False, False])
 
 
 def test_both_solvers_agree() -> None:
