@@ -15,6 +15,7 @@ from same import bits
 import mdlgen
 from mdlgen.backends.lattice import run as lattice
 from mdlgen.backends.lattice.integrate.passes import UNSEEN, _Pass, division
+from mdlgen.errors import RefusedError
 from mdlgen.model.tables import Model
 from mdlgen.report import boxes
 from mdlgen.report.animation import animation
@@ -221,3 +222,48 @@ def test_both_solvers_agree() -> None:
     assert one.energy.left == pytest.approx(two.energy.left, rel=0.02)
     found = mdlgen.compare(one, two)
     assert found.relative < 0.01, found
+
+
+# notes that fall into a tray and on each other, the first 4 ms after the run begins
+TRAY = on_paper("""
+name: tray
+materials: {paper: HINGED_PAPER}
+sheets:
+  note: {material: paper, size: [20 mm, 20 mm], thickness: 0.5 mm, mass: 0.3 g, boxes: [2, 2],
+    center: [0 mm, 0 mm, 3 mm]}
+streams: {fall: {of: note, every: 40 ms, count: 2, from: 4 ms}}
+planes: {tray: {center: [0 mm, 0 mm, -1 mm], normal: z, size: [60 mm, 60 mm, 2 mm], mass: 10 g}}
+contacts:
+  - {between: [fall, [fall, tray]], stiffness: 100 N/mm^1.5, restitution: 0.1, friction: 0.5,
+    smoothing: 10 mm/s}
+run: {duration: 70 ms, step: 0.1 ms, tolerance: 0.05}
+""")
+
+
+@pytest.mark.parametrize("solver", ["lattice", "exudyn"])
+def test_sheets_of_a_stream_lie_on_each_other(solver: str) -> None:
+    """From a start without any sheet on."""
+    result = mdlgen.solve(model(TRAY), solver)
+    assert as_asked(result), result.status
+    assert result.stays[:, 0].tolist() == [4.0, 44.0]
+    height = [result.sheet_motion(k)[0][-1, 2] for k in range(2)]
+    # half a thickness, and one and a half; a weight of 3 mN presses in by a micrometre, and they still settle
+    assert height == pytest.approx([0.25, 0.75], abs=0.1)
+    assert abs(result.energy.balance_error) < 0.02
+
+
+def test_friction_that_sticks_begins_with_the_sheet() -> None:
+    """The patches of a note that comes in late have what they have of one that is there from the start."""
+    text = DRAWN.replace("friction: 0.4,", "friction: {static: 0.4, dynamic: 0.3, sticking: 40 N/mm},")
+    sets = ("streams.infeed.count=1", "run.step=0.05 ms", "sheets.note.boxes=[3, 2]")
+    early = mdlgen.solve(model(text, "run.duration=35 ms", *sets), "lattice")
+    late = mdlgen.solve(model(text, "run.duration=45 ms", "streams.infeed.from=10 ms", *sets), "lattice")
+    assert np.diff(late.stays).item() == pytest.approx(np.diff(early.stays).item(), abs=1e-9)
+    assert late.energy.dissipated == pytest.approx(early.energy.dissipated, rel=1e-6)
+
+
+def test_what_does_not_go_with_a_stream_is_refused_by_name() -> None:
+    yields = model(DRAWN, "materials.paper.yield={curvature: 0.1 1/mm, hardening: 0.1}")
+    for solver in ("lattice", "exudyn"):
+        with pytest.raises(RefusedError, match="infeed_1 comes in or leaves during the run"):
+            mdlgen.solve(yields, solver)
