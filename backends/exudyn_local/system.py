@@ -41,7 +41,7 @@ MM, G, MS = 1e-3, 1e-3, 1e-3
 PER_MM = 1e3
 SI = Units(mm=MM, per_mm=PER_MM, g=G, ms=MS, hertz=1e3**1.5, mpa=1e6)
 
-# Where sheets stand that are not there [m]: no machine is as large.
+# How far from each other, and from the machine, sheets stand that are not there [m]: no machine is as large.
 FAR_AWAY = 1e3
 # Where the Euler parameters are among the coordinates of a box, and in `reference`; before them its position.
 EULER = 3
@@ -180,7 +180,7 @@ def _bodies(model: Model, moving: bool, gone: NDArray[np.bool_] | None = None) -
     free = 0
     for k, sheet in enumerate(model.sheets):
         if gone is not None and gone[k]:
-            bodies["reference"][sheet.first : sheet.first + sheet.count, :EULER] += FAR_AWAY
+            bodies["reference"][sheet.first : sheet.first + sheet.count, :EULER] += (k + 1) * FAR_AWAY
             continue
         for body in range(sheet.first, sheet.first + sheet.count):
             if not table.fixed[body]:

@@ -15,7 +15,10 @@ from same import bits
 import mdlgen
 from mdlgen.backends.lattice import run as lattice
 from mdlgen.backends.lattice.integrate.passes import UNSEEN, _Pass, division
+from mdlgen.errors import RefusedError
 from mdlgen.model.tables import Model
+from mdlgen.report import boxes
+from mdlgen.report.animation import animation
 from mdlgen.results.io.store import hdf5, load
 from mdlgen.results.result import Result
 from mdlgen.spec.load import loads
@@ -194,6 +197,21 @@ def test_requirements_are_of_sheets_while_they_are_there() -> None:
     assert not missed.passed and missed.of == "shot_3"
 
 
+def test_sheets_are_drawn_while_they_are_there() -> None:
+    """On the page by times, in a still by what is there; before a run the sheets with which it begins."""
+    made = model(THROWN, "run.duration=60 ms")
+    result = mdlgen.solve(made, "lattice")
+    at = np.arange(len(result.time))
+    rows = animation(result, at, {})["stays"]
+    assert [row[:3] for row in rows] == [[0, 1, 0.0], [1, 1, 30.013], [2, 1, None]]
+    assert rows[0][3] == result.stays[0, 1] and rows[1][3] is None
+    when = np.array(boxes.there(result, at))
+    assert when[0].tolist() == [True, False, False]
+    assert when[result.time == 40.0].tolist() == [[True, True, False]]
+    assert when[result.time == 50.0].tolist() == [[False, True, False]]
+    assert np.array_equal(boxes.at_start(made), [True, False, False])
+
+
 def test_both_solvers_agree() -> None:
     """Of notes through a nip, by the estimates of both."""
     sets = ("run.duration=60 ms", "streams.infeed.count=2", "sheets.note.boxes=[3, 2]", "run.step=0.05 ms")
@@ -204,3 +222,48 @@ def test_both_solvers_agree() -> None:
     assert one.energy.left == pytest.approx(two.energy.left, rel=0.02)
     found = mdlgen.compare(one, two)
     assert found.relative < 0.01, found
+
+
+# notes that fall into a tray and on each other, the first 4 ms after the run begins
+TRAY = on_paper("""
+name: tray
+materials: {paper: HINGED_PAPER}
+sheets:
+  note: {material: paper, size: [20 mm, 20 mm], thickness: 0.5 mm, mass: 0.3 g, boxes: [2, 2],
+    center: [0 mm, 0 mm, 3 mm]}
+streams: {fall: {of: note, every: 40 ms, count: 2, from: 4 ms}}
+planes: {tray: {center: [0 mm, 0 mm, -1 mm], normal: z, size: [60 mm, 60 mm, 2 mm], mass: 10 g}}
+contacts:
+  - {between: [fall, [fall, tray]], stiffness: 100 N/mm^1.5, restitution: 0.1, friction: 0.5,
+    smoothing: 10 mm/s}
+run: {duration: 70 ms, step: 0.1 ms, tolerance: 0.05}
+""")
+
+
+@pytest.mark.parametrize("solver", ["lattice", "exudyn"])
+def test_sheets_of_a_stream_lie_on_each_other(solver: str) -> None:
+    """From a start without any sheet on."""
+    result = mdlgen.solve(model(TRAY), solver)
+    assert as_asked(result), result.status
+    assert result.stays[:, 0].tolist() == [4.0, 44.0]
+    height = [result.sheet_motion(k)[0][-1, 2] for k in range(2)]
+    # half a thickness, and one and a half; a weight of 3 mN presses in by a micrometre, and they still settle
+    assert height == pytest.approx([0.25, 0.75], abs=0.1)
+    assert abs(result.energy.balance_error) < 0.02
+
+
+def test_friction_that_sticks_begins_with_the_sheet() -> None:
+    """The patches of a note that comes in late have what they have of one that is there from the start."""
+    text = DRAWN.replace("friction: 0.4,", "friction: {static: 0.4, dynamic: 0.3, sticking: 40 N/mm},")
+    sets = ("streams.infeed.count=1", "run.step=0.05 ms", "sheets.note.boxes=[3, 2]")
+    early = mdlgen.solve(model(text, "run.duration=35 ms", *sets), "lattice")
+    late = mdlgen.solve(model(text, "run.duration=45 ms", "streams.infeed.from=10 ms", *sets), "lattice")
+    assert np.diff(late.stays).item() == pytest.approx(np.diff(early.stays).item(), abs=1e-9)
+    assert late.energy.dissipated == pytest.approx(early.energy.dissipated, rel=1e-6)
+
+
+def test_what_does_not_go_with_a_stream_is_refused_by_name() -> None:
+    yields = model(DRAWN, "materials.paper.yield={curvature: 0.1 1/mm, hardening: 0.1}")
+    for solver in ("lattice", "exudyn"):
+        with pytest.raises(RefusedError, match="infeed_1 comes in or leaves during the run"):
+            mdlgen.solve(yields, solver)
