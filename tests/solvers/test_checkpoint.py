@@ -58,16 +58,11 @@ SCENES = {
     "pick": ["run.duration=12 ms", "run.step=0.1 ms", "run.print_step=0.4 ms"],
     "peel": ["run.duration=4 ms", "run.step=0.1 ms", "run.print_step=0.2 ms"],
     "feeder": [
-        "sheets.note_1.boxes=[6,2]",
-        "sheets.note_2.boxes=[4,2]",
-        "run.duration=2 ms",
-        "run.print_step=0.05 ms",
+        *("sheets.note_1.boxes=[6,2]", "sheets.note_2.boxes=[4,2]"),
+        *("run.duration=2 ms", "run.print_step=0.05 ms"),
     ],
     # weight that changes, a spin and a lifted roller that has landed
-    "verify/spun": [
-        "gravity_profile=[[0 ms, 1], [4 ms, 0.5]]",
-        *("run.duration=6 ms", "run.step=0.02 ms", "run.print_step=0.2 ms"),
-    ],
+    "verify/spun": ["gravity_profile=[[0 ms,1],[4 ms,0.5]]", "run.duration=6 ms", "run.step=0.02 ms"],
     # while a sheet yields, of a halved scene
     "crease": ["run.duration=1 ms", "run.step=0.02 ms", "run.print_step=0.05 ms"],
     "snatch": ["run.duration=3 ms", "run.step=0.1 ms", "run.print_step=0.1 ms"],
