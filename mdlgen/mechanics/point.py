@@ -154,13 +154,14 @@ def _push(out, point, normal, losses, load, a, b, law):
     slip = sub(add(a.v, cross(a.w, ra)), add(b.v, cross(b.w, rb)))
     own = -dot(slip, normal)
     slip = sub(slip, scale(dot(slip, square), square))
-    measured = out[MEASURED] > 0.0
-    if measured:
-        slip = stretched(out, slip, square)
     speed = math.sqrt(dot(slip, slip))
     force = damped(spring, rate, law.beta, over)
     mu_static, mu_dynamic, hold = law.mu_static, law.mu_dynamic, out[HOLDS]
+    measured = out[MEASURED] > 0.0
     if measured:
+        # after the speed: a slip of two branches has its squares added, and rounded, in another order
+        slip = stretched(out, slip, square)
+        speed = math.sqrt(dot(slip, slip))
         factor = factor_of(out, speed, normal, (a.r[2], a.r[5], a.r[8]))
         mu_static, mu_dynamic = factor * mu_static, factor * mu_dynamic
     if hold > 0.0:

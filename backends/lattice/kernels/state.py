@@ -185,9 +185,8 @@ ARM_A, ARM_B, KIND, ALONG, NOW, NORMAL, SQUARE = 0, 3, 6, 7, 10, 13, 16
 SPRING, GROWTH, RATE, OVER, BETA = 19, 20, 21, 22, 23
 MU_STATIC, MU_DYNAMIC, STICTION, SLIDING, PRESSING = 24, 25, 26, 27, 28
 START, HOLD, FIELD, POINT = 29, 32, 33, 36
-STRETCHED = (
-    -1.0
-)  # HOLD of one whose friction goes with a direction: FIELD is its stretch (mechanics.measured)
+# HOLD of one whose friction goes with a direction: FIELD is its stretch (mechanics.measured).
+STRETCHED = -1.0
 # What a point is: one that presses and rubs; a damper alone; a couple about its normal, of SPRING at most, of
 # a rolling speed of GROWTH times the angular velocity; a cell of air, whose force has changed by SPRING since
 # the iteration began, and changes by GROWTH along a direction. Alone it would be damped by OVER [N ms/mm].
