@@ -124,7 +124,7 @@ class Parts:
         one up to that, to where a sheet leaves, or to the next whole one."""
         h, slack = self._h, SAME * self._h
         to = min(end, float(self._enters[self._coming()].min(initial=math.inf)))
-        if self._reacting is not None and self.assembly.system.free:
+        if self._reacting is not None:
             to = min(to, max(self._reacting.until(t), t + slack))
         grid = h * (math.floor(t / h + SAME) + 1.0)
         first = min(grid, to)
@@ -137,6 +137,8 @@ class Parts:
         recorder, assembly = self._recorder, self.assembly
         if assembly.system.free == 0:
             recorder.wait(t, count, h)
+            if self._reacting is not None:
+                self._reacting.look(recorder.time)
             return None
         recorder.ahead = lambda: self._leaves() < self._h
         if self._reacting is not None:

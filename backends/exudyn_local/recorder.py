@@ -32,8 +32,8 @@ from mdlgen.mechanics.turning import ABOUT_A, ABOUT_B, ALONG, LIMIT, TURNING
 from mdlgen.model import curves
 from mdlgen.model.meshes import carried
 from mdlgen.model.overlaps.unheld import Unheld
-from mdlgen.model.passing import begun_stays
-from mdlgen.model.rotations import euler_parameters
+from mdlgen.model.passing import begun_stays, energy_as_they_come
+from mdlgen.model.rotations import euler_parameters, without_jumps
 from mdlgen.model.tables import Model
 from mdlgen.reactions.machine import SOON
 from mdlgen.results import audit
@@ -78,9 +78,8 @@ class Recorder:
         self._in_contact, self._last = np.zeros(rows), np.zeros(rows)
         self._acting = np.zeros(rows, bool)
         self._force = np.zeros(rows)  # of the state last observed; a failed static run observes none [N]
-        self._stored: dict[str, list] = {
-            name: [] for name in ("t", "x", "e", "u", "w", "f", "turning", "p", "b")
-        }
+        names = ("t", "x", "e", "u", "w", "f", "turning", "p", "b")
+        self._stored: dict[str, list] = {name: [] for name in names}
         self._first: list[float] | None = None  # energies at the start [J]
         self._lost = self._driven = 0.0
         self._through = self._most = 0.0
@@ -131,18 +130,10 @@ class Recorder:
         begin(system.bodies, system.pairs, system.shapes, here, self._work.motion)
         set_limits(system.bodies, system.pairs, self._deepest)
         ledger(self._tables, here, self._work, self._pairs, self._totals)
-        gained, own = self._totals[:3] - before, self._starts(came)
+        gained, own = self._totals[:3] - before, MM * energy_as_they_come(self.model, came)
         self._entered, self._went = self._entered + own, self._went + own - float(gained.sum())
         assert self._first is not None, "the start was observed"
         self._first = [first + more for first, more in zip(self._first, gained.tolist(), strict=True)]
-
-    def _starts(self, boxes: np.ndarray) -> float:
-        """Energy with which boxes come in [J]."""
-        table = self.model.bodies
-        spin = np.einsum("nji,nj->ni", table.rotation[boxes], table.spin[boxes])
-        kinetic = 0.5 * (table.mass[boxes] @ (table.velocity[boxes] ** 2).sum(axis=1))
-        kinetic += 0.5 * (table.inertia[boxes] * spin**2).sum()
-        return MM * float(kinetic - table.mass[boxes] @ (table.position[boxes] @ self.model.gravity))
 
     def wait(self, t: float, count: int, h: float) -> None:
         """Goes so many steps of h on, where nothing moves."""
@@ -213,7 +204,7 @@ class Recorder:
 
     @property
     def motion(self) -> Motion:
-        """Places and velocities of all bodies as the last step ended, in SI units."""
+        """Of all bodies as the last step ended, in SI units."""
         return self._work.motion
 
     @property
@@ -358,7 +349,7 @@ class Recorder:
             status=reason or "ok",
             time=array("t") / MS,
             position=array("x", count, 3) / MM,
-            rotation=_continuous(array("e", count, 4)),
+            rotation=without_jumps(array("e", count, 4)),
             velocity=array("u", count, 3) * MS / MM,
             spin=array("w", count, 3) * MS,
             contact_force=array("f", rows),
@@ -408,12 +399,3 @@ class Recorder:
             entered=None if self.stays is None else self._entered * to_nmm,
             left=None if self.stays is None else self._went * to_nmm,
         )
-
-
-def _continuous(quaternions: np.ndarray) -> np.ndarray:
-    """Signs such that each body's Euler parameters do not jump between stored times."""
-    if len(quaternions) < 2:
-        return quaternions
-    signs = np.sign(np.einsum("tbi,tbi->tb", quaternions[1:], quaternions[:-1]))
-    signs[signs == 0] = 1.0
-    return np.concatenate([quaternions[:1], quaternions[1:] * np.cumprod(signs, axis=0)[:, :, None]])

@@ -17,6 +17,7 @@ from typing import Any
 import numpy as np
 
 from mdlgen.backends.exudyn_local.assemble import Assembly, assemble
+from mdlgen.backends.exudyn_local.balanced import unbalanced, unbalanced_energy
 from mdlgen.backends.exudyn_local.films import entries_of
 from mdlgen.backends.exudyn_local.passing import Parts
 from mdlgen.backends.exudyn_local.place import owners
@@ -39,13 +40,12 @@ from mdlgen.backends.exudyn_local.shipped import (
 from mdlgen.backends.exudyn_local.stability import falling
 from mdlgen.backends.exudyn_local.state import SEEN, TOTALS, Coordinates, Work, workspace
 from mdlgen.backends.exudyn_local.step import choose_steps, cost, given_steps
-from mdlgen.backends.exudyn_local.system import MM, MS, Pattern, System, build
+from mdlgen.backends.exudyn_local.system import MS, Pattern, System, build
 from mdlgen.errors import RefusedError
 from mdlgen.extras import advice
 from mdlgen.model.passing import passing
 from mdlgen.model.tables import Model
 from mdlgen.model.wider import wider
-from mdlgen.results import audit
 from mdlgen.results.estimates import NOT_KNOWN, by_finer, estimated, marked, open_yet
 from mdlgen.results.result import Result
 
@@ -288,7 +288,7 @@ def _once(
     if reason is None and not static and recorder.time < model.run.duration * MS * (1 - 1e-9):
         reason = f"stopped at {recorder.time / MS:.6g} ms, before the end at {model.run.duration:g} ms"
     if reason is None and static:
-        reason = _unbalanced(model, system, q, work)
+        reason = unbalanced(model, system, q, work)
     if reason is None and static and (ways := falling(system, pattern, q, work)) > 0:
         which = "one direction" if ways == 1 else f"{ways} directions"
         reason = f"{UNSTABLE}: it falls in {which}; a small load aside leads to one that stands"
@@ -296,8 +296,8 @@ def _once(
     if reacting is not None:
         result.reactions = tuple(reacting.machine.log)
     if result.ok and not static:
-        unbalanced = _unbalanced_energy(model, result, recorder, h)
-        result = result if unbalanced is None else result.failed(unbalanced)
+        wrong = unbalanced_energy(model, result, recorder, h)
+        result = result if wrong is None else result.failed(wrong)
     result.wall_s, result.build_s = wall, begun - started
     result.step, result.steps = h / MS, recorder.steps
     named = exu.config.Version() if hasattr(exu.config, "Version") else exu.__version__
@@ -366,38 +366,3 @@ def _run(
         lines = [line.strip() for line in str(error).splitlines() if line.strip()]
         return f"{DIVERGED}: {lines[0] if lines else type(error).__name__}"[:300]
     return None if done else "Exudyn stopped before the end"
-
-
-def _unbalanced_energy(model: Model, result: Result, recorder: Recorder, h: float) -> str | None:
-    """Why the energy does not balance, at the time at which it was furthest off either way.
-
-    A sheet rattles faster than a step is long, which the rule damps; a rigid block loses what its impacts get
-    wrong.
-    """
-    if any(sheet.count > 1 for sheet in model.sheets):
-        # what an edge stores as it comes into a nip comes back some steps later: the end counts
-        return audit.reason(model, result.energy, h / MS, audit.LOSS)
-    for off in (recorder.gained, recorder.vanished):
-        worst = replace(result.energy, balance_error=off / MM / result.energy.scale)
-        reason = audit.reason(model, worst, h / MS, audit.LOSS_RIGID)
-        if reason is not None:
-            return reason
-    return None
-
-
-def _unbalanced(model: Model, system: System, q: np.ndarray, work: Work) -> str | None:
-    """Static equilibrium by our own account: the residual against weight, loads and stress at the start."""
-    forces(system.tables, Coordinates(q, np.zeros_like(q), 1.0), 1.0, work)
-    residual = work.forces.copy()
-    for row in system.bodies:
-        n = row["first"]
-        if n >= 0:  # along the Euler parameters themselves a force does no work
-            e = row["reference"][3:] + q[n + 3 : n + 7]
-            residual[n + 3 : n + 7] -= e * (e @ residual[n + 3 : n + 7]) / (e @ e)
-    weight = float(system.bodies["mass"].sum() * np.linalg.norm(system.gravity))
-    rest = model.bushings.rest[system.bushings["row"]]
-    bent = float(np.abs(system.bushings["k"][:, 3:] * rest).max(initial=0.0))
-    loads = float(np.abs(system.loads["force"]).sum() + (np.abs(system.loads["moment"]).sum() + bent) / 0.1)
-    allowed = 1e-4 * max(weight, loads, 1e-9)
-    worst = float(np.abs(residual).max())
-    return None if worst <= allowed else f"static residual {worst:.3g} N above {allowed:.3g} N"

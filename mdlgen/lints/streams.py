@@ -53,13 +53,17 @@ def _later(model: Model, sheet: SheetPart, before: SheetPart, after: float) -> s
 
 def never_there(model: Model) -> Iterator[Lint]:
     """A sheet that comes in after the end of the run, or when a rule says so, of which the scene has none."""
-    for sheet in model.sheets:
+    orders = [order for rule in model.reactions.rules for order in rule.orders]
+    called = {sheet for order in orders for sheet in order.sheets}
+    for k, sheet in enumerate(model.sheets):
+        if math.isnan(sheet.enters) and k in called:
+            continue
         if math.isnan(sheet.enters):
             yield Lint(
                 "W179",
                 f"sheets.{sheet.name}.by_rule",
                 "it comes in when a rule says so, and no rule of the scene does",
-                "give it a time: every and count of its stream, or enters",
+                "let a rule do it, as do: {enter: NAME}, or give every and count of its stream, or enters",
             )
         elif sheet.enters >= model.run.duration:
             yield Lint(

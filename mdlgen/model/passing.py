@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
-from mdlgen.model.tables import Floats, Model, SheetPart
+from mdlgen.model.tables import Floats, Ints, Model, SheetPart
 
 if TYPE_CHECKING:
     from mdlgen.spec.sheet import Sheet
@@ -80,3 +80,12 @@ def far(
         for axis, at, side in sheet.out
     ]
     return np.array(found)
+
+
+def energy_as_they_come(model: Model, boxes: Ints) -> float:
+    """Kinetic and potential energy with which boxes come in [N mm]."""
+    table = model.bodies
+    spin = np.einsum("nji,nj->ni", table.rotation[boxes], table.spin[boxes])
+    kinetic = 0.5 * (table.mass[boxes] @ (table.velocity[boxes] ** 2).sum(axis=1))
+    kinetic += 0.5 * (table.inertia[boxes] * spin**2).sum()
+    return float(kinetic - table.mass[boxes] @ (table.position[boxes] @ model.gravity))

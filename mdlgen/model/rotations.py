@@ -70,3 +70,12 @@ def column(parameters: Floats, k: int) -> Floats:
 def turns(parameters: Floats) -> Floats:
     """Rotation matrices (..., 3, 3) of Euler parameters (..., 4), scalar first and of any length."""
     return np.stack([column(parameters, k) for k in range(3)], axis=-1)
+
+
+def without_jumps(quaternions: Floats) -> Floats:
+    """Euler parameters (t, bodies, 4) with signs such that no body's jump from one time to the next."""
+    if len(quaternions) < 2:
+        return quaternions
+    signs = np.sign(np.einsum("tbi,tbi->tb", quaternions[1:], quaternions[:-1]))
+    signs[signs == 0] = 1.0
+    return np.concatenate([quaternions[:1], quaternions[1:] * np.cumprod(signs, axis=0)[:, :, None]])

@@ -61,8 +61,8 @@ class Action(Strict):
 
     speed: dict[str, Annotated[ToSpeed, _short("speed")]] = Field(
         default_factory=dict,
-        description="drives by roller, pattern, nip or shaft, and the speed that each goes to: {entry: 0 rad/s} or "
-        "{entry: {surface_speed: 300 mm/s, ramp: 5 ms}}",
+        description="drives by roller, pattern, nip or shaft, and the speed that each goes to: "
+        "{entry: 0 rad/s} or {entry: {surface_speed: 300 mm/s, ramp: 5 ms}}",
     )
     press: dict[str, Annotated[float, quantity("N")]] = Field(
         default_factory=dict,

@@ -1,0 +1,50 @@
+"""Whether a run stands: its energy over time, its forces at rest."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+
+from mdlgen.backends.exudyn_local.recorder import Recorder
+from mdlgen.backends.exudyn_local.shipped import forces
+from mdlgen.backends.exudyn_local.state import Coordinates, Work
+from mdlgen.backends.exudyn_local.system import MM, MS, System
+from mdlgen.model.tables import Model
+from mdlgen.results import audit
+from mdlgen.results.result import Result
+
+
+def unbalanced_energy(model: Model, result: Result, recorder: Recorder, h: float) -> str | None:
+    """Why the energy does not balance, at the time at which it was furthest off either way.
+
+    A sheet rattles faster than a step is long, which the rule damps; a rigid block loses what its impacts get
+    wrong.
+    """
+    if any(sheet.count > 1 for sheet in model.sheets):
+        # what an edge stores as it comes into a nip comes back some steps later: the end counts
+        return audit.reason(model, result.energy, h / MS, audit.LOSS)
+    for off in (recorder.gained, recorder.vanished):
+        worst = replace(result.energy, balance_error=off / MM / result.energy.scale)
+        reason = audit.reason(model, worst, h / MS, audit.LOSS_RIGID)
+        if reason is not None:
+            return reason
+    return None
+
+
+def unbalanced(model: Model, system: System, q: np.ndarray, work: Work) -> str | None:
+    """Static equilibrium by our own account: the residual against weight, loads and stress at the start."""
+    forces(system.tables, Coordinates(q, np.zeros_like(q), 1.0), 1.0, work)
+    residual = work.forces.copy()
+    for row in system.bodies:
+        n = row["first"]
+        if n >= 0:  # along the Euler parameters themselves a force does no work
+            e = row["reference"][3:] + q[n + 3 : n + 7]
+            residual[n + 3 : n + 7] -= e * (e @ residual[n + 3 : n + 7]) / (e @ e)
+    weight = float(system.bodies["mass"].sum() * np.linalg.norm(system.gravity))
+    rest = model.bushings.rest[system.bushings["row"]]
+    bent = float(np.abs(system.bushings["k"][:, 3:] * rest).max(initial=0.0))
+    loads = float(np.abs(system.loads["force"]).sum() + (np.abs(system.loads["moment"]).sum() + bent) / 0.1)
+    allowed = 1e-4 * max(weight, loads, 1e-9)
+    worst = float(np.abs(residual).max())
+    return None if worst <= allowed else f"static residual {worst:.3g} N above {allowed:.3g} N"
