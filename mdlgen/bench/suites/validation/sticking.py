@@ -141,7 +141,7 @@ def _hung(holds: bool, mass: float, result: Result, _: Result | None) -> list[Fi
     return [against("acceleration", exact, found, 3e-2, "mm/ms^2", basis)]
 
 
-def _web(drive: str, force: float, duration: float) -> tuple[str, ...]:
+def _web(drive: str, force: float, duration: float, step: float = 0.1) -> tuple[str, ...]:
     """A note between a driven roller and a free one, pulled back by a force."""
     note = (
         "{material: p, size: [200 mm, 40 mm], thickness: 0.2 mm, mass: 2 g, boxes: [40, 2], layout: plate,"
@@ -157,7 +157,7 @@ def _web(drive: str, force: float, duration: float) -> tuple[str, ...]:
         f"contacts=[{{between: [n, [a, b]], stiffness: {STIFF} N/mm^1.5, friction: {_friction(MU)},"
         " restitution: 0.3, smoothing: 5 mm/s}]",
         f"loads=[{{sheet: n, edge: x_min, force: [{-force!r} N, 0 N, 0 N]}}]",
-        f"run={{duration: {duration} ms, margin: 60 mm, step: 0.1 ms}}",
+        f"run={{duration: {duration} ms, margin: 60 mm, step: {step} ms}}",
     )
 
 
@@ -186,7 +186,7 @@ def _register() -> BenchCase:
         corners += [[at + 6.0, SPEED], [at + 20.0, SPEED], [at + 26.0, 0.0]]
         corners += [[at + TURN, 0.0]] if k < STARTS - 1 else []
     profile = ", ".join(f"[{t} ms, {w} rad/s]" for t, w in corners)
-    sets = _web(f"{{profile: [{profile}]}}", 0.0, corners[-1][0] + 30.0)
+    sets = _web(f"{{profile: [{profile}]}}", 0.0, corners[-1][0] + 30.0, 0.05)
     turned = sum(0.5 * (w1 + w2) * 1e-3 * (t2 - t1) for (t1, w1), (t2, w2) in pairwise(corners))
     name = f"nip that starts and stops {STARTS} times"
     return row(GROUP, name, Run(SAMPLE, sets), Registers(RADIUS * turned))
