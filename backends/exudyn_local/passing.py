@@ -191,7 +191,7 @@ class Parts:
         places = np.where(self._boxes(comes)[:, None], self._model.bodies.position, x[:-1] / MM)
         turns = self._model.bodies.rotation.reshape(-1, 9)
         turns = np.where(self._boxes(comes)[:, None], turns, r[:-1])
-        wrong = self._recorder.taken(comes, ~gone, places, turns, t / MS)
+        wrong = self._recorder.unheld.taken(comes, ~gone, places, turns, t / MS)
         return gone & ~comes, wrong
 
     def _boxes(self, sheets: NDArray[np.bool_]) -> NDArray[np.bool_]:

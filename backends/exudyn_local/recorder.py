@@ -87,7 +87,7 @@ class Recorder:
         self._low, self._high = model.pairs.low * MM, model.pairs.high * MM
         self._last_stored = -1
         self._deepest = np.empty(len(system.pairs))
-        self._unheld = Unheld(model)
+        self.unheld = Unheld(model)
         self._reacting: Reacting | None = None
         self.parted = self._parts = False
         self.finished = False  # a rule ended the run, at a stored time
@@ -97,12 +97,9 @@ class Recorder:
         self._places = np.append(model.bodies.position * MM, np.zeros((1, 3)), axis=0)  # where those are left
         self._turns = np.append(model.bodies.rotation.reshape(-1, 9), np.zeros((1, 9)), axis=0)
         self._entered = self._went = 0.0  # energy that came in, and left [J]
-        self.ahead: Callable[[], bool] | None = None  # whether a part of the run ends before the next step
-        self.stopped = False  # it did
-
-    def taken(self, comes: Mask, there: Mask, places: np.ndarray, turns: np.ndarray, t: float) -> str | None:
-        """See model.overlaps.unheld."""
-        return self._unheld.taken(comes, there, places, turns, t)
+        # whether a part of the run ends before the next step (no), and whether it did
+        self.ahead: Callable[[], bool] = bool
+        self.stopped = False
 
     def rebase(self, system: System, gone: Mask, boxes: Mask, at: Coordinates | None) -> None:
         """From now on the System has no sheets `gone` (sheets,), of the boxes (bodies + 1,). `at`: the state,
@@ -183,7 +180,7 @@ class Recorder:
             happened = self._reacting.look(t)
             self.parted = self._parts and (happened or self._reacting.until(t) < t + step * (1.0 - SOON))
             self.finished = self._reacting.machine.ended and self._last_stored == self.steps
-        if self.reason is None and self.ahead is not None and self.ahead():
+        if self.reason is None and self.ahead():
             self.stopped = True
         return self.reason is None and not (self.parted or self.finished or self.stopped)
 
@@ -292,7 +289,7 @@ class Recorder:
         self._stored["p"].append(self.system.hinges["plastic"].copy())
         self._stored["b"].append(lags(self.model, self.system, self._q, t))
         there = None if self.stays is None else ~self._gone
-        self.reason = self.reason or self._unheld.found(x[:-1] / MM, r[:-1], t / MS, there)
+        self.reason = self.reason or self.unheld.found(x[:-1] / MM, r[:-1], t / MS, there)
 
     def _watch(self, t: float, step: float) -> None:
         """Sets the reason of a failure where a joint is beyond its curve, a body left its bounds or went deep

@@ -42,11 +42,11 @@ def sweeps(model: Model) -> Iterator[Lint]:
 
 
 def unused(model: Model) -> Iterator[Lint]:
-    """Positions that no profile goes to; rules may command them."""
-    if getattr(model, "rules", ()):
-        return
+    """Positions that no profile goes to, and no rule sends a part to."""
+    orders = [order for rule in model.reactions.rules for order in rule.orders if order.kind == "move"]
     for part, moving in model.gates:
         known = set(moving.corners[:, 1].tolist())
+        known |= {order.value for order in orders if order.name == part.name}
         idle = [
             name
             for name, place in zip(moving.names, moving.places.tolist(), strict=True)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
+from mdlgen.conditions import condition
 from mdlgen.formulas import names
 from mdlgen.lints.lint import Lint
 from mdlgen.model.parameters.names import OF_USER
@@ -17,6 +18,7 @@ def parameters(model: Model) -> Iterator[Lint]:
     texts += [text for anchor in (*model.probes, *model.supports) for text in anchor.formulas if text]
     texts += [formula for _, formula in model.unfollowed]
     used = {name for text in texts for name in names(text)}
+    used |= {name for rule in model.reactions.rules for name in condition(rule.when).expression.names}
     for p in own:
         if p.member not in used:
             yield Lint(
@@ -26,7 +28,8 @@ def parameters(model: Model) -> Iterator[Lint]:
                 f"use it in a formula, as 2*{p.member}, or leave it out",
             )
     for where, formula in model.unfollowed:
-        if names(formula):
+        # texts refuse rules, and leave sensors out
+        if names(formula) and not where.startswith(("rules.", "sensors.")):
             yield Lint(
                 "W128",
                 where,

@@ -70,6 +70,7 @@ RATTLING: dict[str, tuple[str, ...]] = {
     "spring_plate": (),
     "stall": (),
     "stream": ("run.duration=70 ms",),
+    "sorter": ("run.duration=70 ms",),
     "tilt_correction": ("run.duration=8 ms",),
     "transport_4x2": (),
     "transport_tilted": ("run.duration=20 ms",),

@@ -112,3 +112,48 @@ def test_a_run_that_is_gone_on_with_reacts_as_it_would_have(tmp_path) -> None:
     assert on.reactions == whole.reactions
     assert np.array_equal(on.position, whole.position)
     assert np.array_equal(on.spin, whole.spin)
+
+
+@SOLVERS
+def test_a_gate_goes_where_a_rule_sends_it(solver) -> None:
+    # it is sent on while it is under way, with the speed that it has
+    rules = [
+        {"when": "eye covered", "after": "2 ms", "do": {"move": {"gate": {"to": "open", "in": "20 ms"}}}},
+        {"when": "eye covered", "after": "12 ms", "do": {"move": {"gate": {"to": "1 mm", "in": "10 ms"}}}},
+    ]
+    positions = {"open": "4 mm", "closed": "0 mm"}
+    gate = {"center": ["0 mm", "0 mm", "-30 mm"], "normal": "z", "size": ["9 mm", "9 mm", "2 mm"]}
+    gate["slide"] = {"direction": "z", "positions": positions}
+    result = solver(falling(rules, planes={"gate": gate}, run={"duration": "150 ms"}), step=0.5)
+    first, second = at(result, "rule")
+    assert (first, second) == pytest.approx((102.0, 112.0), abs=1e-3)
+    place = result.position[:, 1, 2] + 30.0
+    s = np.clip((result.time - first) / 20.0, 0.0, 1.0)
+    ease = 4.0 * s * s * (3.0 - 2.0 * s)
+    before = result.time < second
+    assert place[before] == pytest.approx(ease[before], abs=1e-6)
+    assert place[result.time > second + 10.0] == pytest.approx(1.0, abs=1e-9)
+    rate = np.gradient(place, result.time)
+    assert np.abs(np.diff(rate)).max() < 0.12  # no jump of the speed, which is 0.3 mm/ms at the second order
+
+
+@SOLVERS
+def test_the_next_note_comes_when_the_one_before_is_seen(solver) -> None:
+    rules = [
+        {"when": "count(eye) == 0", "after": "5 ms", "do": {"enter": "infeed"}},
+        {"when": "eye covered", "after": "3 ms", "do": {"enter": "infeed"}},
+    ]
+    stream = {"infeed": {"of": "note", "by_rule": True, "count": 3, "out": "beyond x = 40 mm"}}
+    result = solver(falling(rules, streams=stream, run={"duration": "400 ms"}), step=0.5)
+    # each begins at rest, and is seen after 10 mm, 100 ms; the third one is the last
+    assert result.stays is not None
+    assert result.stays[:, 0] == pytest.approx([5.0, 108.0, 211.0], abs=2e-3)
+    assert at(result) == pytest.approx([105.0, 208.0, 311.0, *at(result)[3:]], abs=2e-3)
+    assert [row["sheet"] for row in result.reactions if row["kind"] == "covered"][:3] == [
+        "infeed_1",
+        "infeed_2",
+        "infeed_3",
+    ]
+    # a note that has left covers nothing any more: it is 30 mm beyond the eye then
+    cleared = at(result, "cleared")
+    assert cleared[0] == pytest.approx(result.stays[0, 1], abs=0.6)

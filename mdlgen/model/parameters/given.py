@@ -40,13 +40,13 @@ def parameters(
 def unfollowed(scene: Scene, rows: tuple[Parameter, ...]) -> tuple[tuple[str, str], ...]:
     """Formulas of values that no row has, and that so are numbers in a text: where they stand, and texts.
 
-    Of nips the rollers are there; texts refuse rules, and leave sensors out.
+    Of nips the rollers are there.
     """
     had = {row.path for row in rows} | {_source(scene, row)[0] for row in rows if row.formula}
     return tuple(
         (".".join(map(str, path)), formula)
         for path, formula in sorted(scene.formulas.items(), key=lambda item: str(item[0]))
-        if path not in had and path[0] not in ("nips", "rules", "sensors") and path[2:3] != ("at",)
+        if path not in had and path[0] != "nips" and path[2:3] != ("at",)
     )
 
 
