@@ -7,7 +7,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from mdlgen.mechanics.arm import FORCE_0
-from mdlgen.mechanics.gate import command
+from mdlgen.mechanics.gate import WIDE, command, write
 from mdlgen.model.limits import MOST_CORNERS
 from mdlgen.model.tables import Model, Order
 
@@ -44,6 +44,8 @@ class Commands:
             along = 1.0 if part.moving.turns else self._units.length
             time = self._units.time
             command(bodies, part.body, t * time, order.value * along, order.ramp * time)
+            if t > 0.0:  # Exudyn counts places from that at the time 0, where a part is given
+                write(row, np.array([np.zeros(WIDE), *row["drive"][: 2 * WIDE].reshape(2, WIDE)]))
             ordered["corners"], ordered["drive"] = int(row["corners"]), row["drive"].copy()
         else:
             press = row["press"].copy()
