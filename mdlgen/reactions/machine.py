@@ -8,7 +8,7 @@ acceleration a, second order in the step h. What was not foreseen is found withi
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import Any, NamedTuple
 
@@ -154,6 +154,8 @@ class Machine:
     def _next(self, eye: Eye, sight: Sight, t: float, step: float, poses: Poses) -> float:
         """When a sensor is looked at next: where it changes within the step, at its end where it is near, or
         as soon as a sheet can be there."""
+        if self._changes(eye, sight, poses):
+            return t  # by a sheet that has just come in, or left
         off = self._off(eye, poses)
         away = abs(off - (eye.hysteresis if sight.covered else 0.0))
         free = self._free(away, max(self._fastest(eye, poses), self._slowest))
@@ -219,14 +221,16 @@ class Machine:
         Raises RunawayError.
         """
         stage = self._stage
-        for edge in self._edges(t, step, poses):
+        edges = {self._eyes[edge.eye].name: edge for edge in self._edges(t, step, poses)}
+        for edge in edges.values():
             self._see(edge)
+        seen = {name: edge.time for name, edge in edges.items()}
         orders: list[Order] = []
         acted: set[int] = set()
         soon = SOON * step
         for _ in range(MOST_AT_ONCE):
             if self._rules:
-                self._judge(t, poses.after(soon), soon)
+                self._judge(t, poses.after(soon), soon, seen)
             due = sorted(entry for entry in stage.pending if entry[0] <= t + soon)
             if not due:
                 self._before = (t, poses.copy()) if self._eyes else None
@@ -293,13 +297,16 @@ class Machine:
         sheet = self._model.sheets[edge.sheet].name
         self.log.append({"time_ms": edge.time, "kind": kind, "sensor": eye.name, "sheet": sheet} | numbers)
 
-    def _judge(self, t: float, poses: Poses, soon: float) -> None:
-        """Lets the rules that come true be due."""
+    def _judge(self, t: float, poses: Poses, soon: float, seen: Mapping[str, float]) -> None:
+        """Lets the rules that come true be due; `seen`: when sensors changed since the last look, from which
+        delays of rules count that name them."""
         stage, known = self._stage, self._known(t + soon, poses)
         for k, rule in enumerate(self._rules):
             holds = (not rule.states or stage.state in rule.states) and self._conditions[k].holds(known)
             if holds and not stage.true[k] and not (rule.once and self._set_off(k)):
-                stage.pending.append((t + rule.after, k))
+                named = {name.partition(".")[0] for name in self._conditions[k].expression.names}
+                since = max((time for name, time in seen.items() if name in named), default=t)
+                stage.pending.append((since + rule.after, k))
             stage.true[k] = holds
 
     def _set_off(self, rule: int) -> bool:

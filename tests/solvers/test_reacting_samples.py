@@ -7,9 +7,10 @@ import pytest
 from ran import solved
 
 import mdlgen
+from mdlgen.backends.lattice.run import solve
 from mdlgen.checks import lints
 
-COARSE = ("sheets.note.boxes=[5,2]", "run.duration=45 ms", "run.tolerance=0.01")
+COARSE = ("sheets.note.boxes=[10,4]", "run.duration=45 ms", "run.tolerance=0.01")
 
 
 def test_a_note_stops_where_the_sensor_says() -> None:
@@ -25,15 +26,13 @@ def test_a_note_stops_where_the_sensor_says() -> None:
         assert abs(float(np.interp(at, result.time, rate[:, 0]))) < 0.005
     # 6 mm at 1400 mm/s later
     assert seen[1] - seen[0] == pytest.approx(6.0 / 1.4, abs=0.02)
-    assert places[1] == pytest.approx(places[0], abs=1e-3)
+    assert places[1] == pytest.approx(places[0], abs=0.01)
 
 
 def test_every_second_note_goes_up() -> None:
-    model = mdlgen.lower(
-        mdlgen.load("samples/sorter.yaml", ["sheets.note.boxes=[5,1]", "run.tolerance=0.05"])
-    )
+    model = mdlgen.lower(mdlgen.load("samples/sorter.yaml", ["sheets.note.boxes=[5,1]"]))
     assert not lints(model)
-    result = solved(model, "lattice")
+    result = solve(model, step=0.125)
     assert result.ok
     assert all(outcome.passed for outcome in result.verdict)
     went = {row["sensor"]: row["sheet"] for row in result.reactions if row.get("sensor") == "high"}
