@@ -7,7 +7,7 @@ from collections.abc import Mapping
 from typing import Any
 
 # Of the drawing, in its own units (convention).
-WIDE, LEFT, HIGH, AXIS = 1000.0, 150.0, 24.0, 22.0
+WIDE, LEFT, HIGH, AXIS, NUMBER = 1000.0, 150.0, 24.0, 22.0, 22.0
 
 
 def logic(summary: Mapping[str, Any]) -> dict[str, Any] | None:
@@ -36,15 +36,19 @@ def logic(summary: Mapping[str, Any]) -> dict[str, Any] | None:
         {"x": at(e["time_ms"]), "time": e["time_ms"], "rule": e["rule"], "text": f"{e['when']}: {e['does']}"}
         for e in acts
     ]
+    for mark, before in zip(marks[1:], marks, strict=False):
+        # a number that would be written over the one before it stands lower
+        near = mark["x"] - before["x"] < NUMBER
+        mark["down"] = 0.0 if not near or before.get("down") else 0.5 * HIGH
     step = _round(end / 8.0)
     ticks = [{"x": at(k * step), "text": f"{k * step:g}"} for k in range(int(end / step + 1e-9) + 1)]
     below = HIGH * len(rows)
     return {
         "width": WIDE,
-        "height": below + (HIGH if marks else 0.0) + AXIS,
+        "height": below + (1.5 * HIGH if marks else 0.0) + AXIS,
         "bar": HIGH,
         "left": LEFT,
-        "axis": below + (HIGH if marks else 0.0),
+        "axis": below + (1.5 * HIGH if marks else 0.0),
         "rows": rows,
         "below": below,
         "marks": marks,
