@@ -107,6 +107,7 @@ class Machine:
         self._moving = [k for k, names in enumerate(named) if names & self._of_states.keys()]
         clocked = [any(n == CLOCK or n.endswith(".since") for n in names) for names in named]
         self._clocked = [k for k, timed in enumerate(clocked) if timed and k not in self._moving]
+        self._turning = {part.name for part, moving in model.gates if moving.turns}
         count = len(self._rules)
         self._stage = _Stage([Sight() for _ in self._eyes], [False] * count, [0] * count, table.begins)
         self._before: tuple[float, Poses] | None = None
@@ -325,7 +326,7 @@ class Machine:
                 ]
             elif order.kind == "end":
                 stage.ended = True
-        does = ", ".join(in_words(order) for order in orders)
+        does = ", ".join(in_words(order, order.name in self._turning) for order in orders)
         row = {"time_ms": t, "kind": "rule", "rule": rule, "when": self._rules[rule].when, "does": does}
         self.log.append(row)
         return [order for order in orders if order.kind != "go"]
@@ -379,8 +380,8 @@ class Machine:
         self.log = list(kept["log"])
 
 
-def in_words(order: Order) -> str:
-    """What an order asks for, as a person says it."""
+def in_words(order: Order, turns: bool = False) -> str:
+    """What an order asks for, as a person says it; `turns`: its place is an angle."""
     if order.kind == "speed":
         ramp = f" in {order.ramp:g} ms" if order.ramp else ""
         return f"{order.name} to {order.value * PER_SECOND:.6g} rad/s{ramp}"
@@ -389,7 +390,8 @@ def in_words(order: Order) -> str:
     if order.kind == "torque":
         return f"arm of {order.name} to {order.value:.6g} N*mm"
     if order.kind == "move":
-        return f"{order.name} moves to {order.value:.6g} in {order.ramp:g} ms"
+        place = f"{math.degrees(order.value):.6g} deg" if turns else f"{order.value:.6g} mm"
+        return f"{order.name} moves to {place} in {order.ramp:g} ms"
     if order.kind == "enter":
         return f"the next sheet of {order.name} comes in"
     return f"go to {order.name}" if order.kind == "go" else "end"
