@@ -13,7 +13,7 @@ from typing import NamedTuple
 import numpy as np
 
 from mdlgen.model.tables.axle import CONTROLLED, FREE, LIMITER, OPEN, STEPPER, AxlePart
-from mdlgen.spec.machine import Drive
+from mdlgen.spec.drive import Drive
 from mdlgen.spec.motor import Bearing, Limiter, Motor
 from mdlgen.spec.scene import Scene
 from mdlgen.spec.shaft import Shaft

@@ -1,5 +1,5 @@
 """Limits of a scene that records of a solver have room for."""
 
-from mdlgen.spec.machine import MOST_CORNERS as MOST_CORNERS
+from mdlgen.spec.drive import MOST_CORNERS as MOST_CORNERS
 from mdlgen.spec.motor import MOST_POINTS as MOST_POINTS
 from mdlgen.spec.moving import MOST_PLACES as MOST_PLACES

@@ -15,11 +15,12 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from mdlgen.conditions import CLOCK, OF_SENSOR, condition
+from mdlgen.conditions import CLOCK, condition
 from mdlgen.formulas import Amount
 from mdlgen.model.tables import Model, Order
 from mdlgen.reactions.known import of_states
 from mdlgen.reactions.sensing import FAR, Eye, Poses, between
+from mdlgen.reactions.sight import Sight
 from mdlgen.units import PER_SECOND
 
 # What is that much of a step ahead is there: times are found to a part of that (convention; the time of an
@@ -47,33 +48,6 @@ class _Edge(NamedTuple):
     sheet: int
     time: float
     poses: Poses
-
-
-@dataclass
-class Sight:
-    """What a sensor knows. Times in ms, nan: not yet."""
-
-    covered: bool = False
-    count: int = 0
-    since: float = math.nan  # time of its last change
-    gap: float = math.nan
-    speed: float = math.nan
-    skew: float = math.nan
-    position: float = math.nan
-    looks: float = 0.0  # when it is looked at next
-
-    def known(self, t: float) -> dict[str, Amount | float]:
-        values = {
-            "count": float(self.count),
-            "since": t - self.since,
-            **{name: getattr(self, name) for name in ("gap", "speed", "skew", "position")},
-        }
-        found: dict[str, Amount | float] = {"covered": float(self.covered), "clear": float(not self.covered)}
-        for name, value in values.items():
-            dimension = OF_SENSOR[name]
-            assert dimension is not None, "they are numbers"
-            found[name] = Amount(value, dimension)
-        return found
 
 
 @dataclass

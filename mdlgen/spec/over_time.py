@@ -7,8 +7,8 @@ from typing import Annotated, Any
 
 from pydantic import AfterValidator, BeforeValidator, Field
 
+from mdlgen.spec.drive import MOST_CORNERS
 from mdlgen.spec.fields import TimeOrZero
-from mdlgen.spec.machine import MOST_CORNERS
 from mdlgen.spec.quantities import ratio
 from mdlgen.spec.strict import fail
 

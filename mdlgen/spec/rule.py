@@ -7,8 +7,8 @@ from typing import Annotated, Any
 from pydantic import BeforeValidator, ConfigDict, Field, model_validator
 
 from mdlgen.conditions import condition
+from mdlgen.spec.drive import AngularSpeed
 from mdlgen.spec.fields import Name, Time, TimeOrZero
-from mdlgen.spec.machine import AngularSpeed
 from mdlgen.spec.quantities import default, quantity
 from mdlgen.spec.strict import Strict, fail
 

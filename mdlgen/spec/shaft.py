@@ -7,8 +7,8 @@ from typing import TYPE_CHECKING, Annotated
 from pydantic import Field, model_validator
 
 from mdlgen.spec.between import known
+from mdlgen.spec.drive import Drive
 from mdlgen.spec.fields import Name
-from mdlgen.spec.machine import Drive
 from mdlgen.spec.motor import Bearing, Inertia
 from mdlgen.spec.quantities import default, ratio
 from mdlgen.spec.strict import Strict, fail

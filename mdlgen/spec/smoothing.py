@@ -7,7 +7,8 @@ from collections.abc import Iterable
 from typing import TYPE_CHECKING, NamedTuple
 
 if TYPE_CHECKING:
-    from mdlgen.spec.machine import Drive, Roller
+    from mdlgen.spec.drive import Drive
+    from mdlgen.spec.machine import Roller
     from mdlgen.spec.scene import Scene
     from mdlgen.spec.sheet import Sheet
 

@@ -108,7 +108,7 @@ def test_the_readmes_first_scene_has_no_lint():
 
 def test_the_manuals_pieces_of_scenes_load():
     scene, *pieces = (YAML(typ="safe").load(block) for block in yaml_blocks("docs/reference/scene.md"))
-    formulas, graded, zones, shape, rims, nips, piles, guides, meshes, named, parts = pieces
+    formulas, graded, zones, shape, rims, nips, piles, streams, guides, meshes, named, parts = pieces
 
     def lowered(**more):
         return mdlgen.lower(mdlgen.loads(json.dumps({**scene, **more})))
@@ -137,6 +137,10 @@ def test_the_manuals_pieces_of_scenes_load():
     }
     pile = lowered(**with_pile, planes=floor, rollers={}, contacts=piles["contacts"], probes={})
     assert {sheet.name for sheet in pile.sheets} == {f"cassette_{k}" for k in range(1, 21)}
+    stream = lowered(
+        sheets=streams["sheets"], streams=streams["streams"], contacts=streams["contacts"], probes={}
+    )
+    assert [sheet.enters for sheet in stream.sheets][:1] == [0.0] and len(stream.sheets) == 20
     # values that follow from parameters, and rollers and contacts that a nip makes
     motor = {**scene["rollers"]["motor"], **formulas["rollers"]["motor"], "radius": "radius"}
     driven = lowered(parameters=formulas["parameters"], rollers={**scene["rollers"], "motor": motor})

@@ -72,6 +72,7 @@ SCENES = {
         *("run.duration=4 ms", "run.step=0.05 ms", "run.print_step=0.2 ms"),
     ],
 }
+OFTEN = ["run.step=0.1 ms", "run.print_step=0.1 ms"]
 SHORT = ["run.duration=12 ms", "run.step=0.1 ms", "run.print_step=0.4 ms"]
 # the uppermost note slides, the others stick
 STUCK = stack(3, "[3, 4]").replace(
@@ -88,16 +89,12 @@ MORE = {
     # of the nips of a halved scene, while the note enters one
     "bristles": (
         MACHINE,
-        [
-            "contacts.*.friction={static: 0.5, dynamic: 0.4, sticking: 40 N/mm}",
-            "run.step=0.1 ms",
-            "run.print_step=0.1 ms",
-        ],
+        ["contacts.*.friction={static: 0.5, dynamic: 0.4, sticking: 40 N/mm}", *OFTEN],
     ),
     # a pile that falls asleep, and wakes as another note falls on it; with friction that sticks
     "asleep": (SLEEPY, []),
     "one way": (FORTH_AND_BACK, [*OVERRUN, *SHORT]),
-    "halved": (MACHINE, ["run.step=0.1 ms", "run.print_step=0.1 ms"]),
+    "halved": (MACHINE, OFTEN),
 }
 
 
@@ -389,12 +386,8 @@ def test_a_run_of_other_code_or_another_scene_is_refused(tmp_path: Path) -> None
     again, there = room.resumed(tmp_path)
     assert again == of and digest(again.model()) == digest(model)
     room.check_same(tmp_path, there, model, packages("lattice"))
-    for name, words in (
-        ("code", "solver's code"),
-        ("numba", "numba"),
-        ("model", "scene names"),
-        ("processor", "proc"),
-    ):
+    named = {"code": "solver's code", "numba": "numba", "model": "scene names", "processor": "proc"}
+    for name, words in named.items():
         with pytest.raises(mdlgen.errors.RefusedError, match=words):
             room.check_same(tmp_path, {**there, name: "another"}, model, packages("lattice"))
     for bad in ("", "[]", '{"task": 1}', '{"task": {"spec": 1}}', "{" * 100_000):
