@@ -76,7 +76,7 @@ class _Motion(Strict):
                     )
             return self
         for key in (self.push, "stiffness", "damping", "stops"):
-            if key in self.model_fields_set and getattr(self, key) is not None:
+            if getattr(self, key):  # what is left out has no force
                 raise fail(
                     f"{key} acts on a part that is free to move, which needs {self.inert}", within=(key,)
                 )

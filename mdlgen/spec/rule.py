@@ -4,7 +4,8 @@ from __future__ import annotations
 
 from typing import Annotated, Any
 
-from pydantic import BeforeValidator, ConfigDict, Field, model_validator
+from pydantic import BeforeValidator, ConfigDict, Field, GetJsonSchemaHandler, model_validator
+from pydantic_core import CoreSchema
 
 from mdlgen.conditions import condition
 from mdlgen.spec.drive import AngularSpeed
@@ -24,6 +25,16 @@ def _short(key: str):
 
 def _names(value: Any) -> Any:
     return (value,) if isinstance(value, str) else value
+
+
+class _OrText:
+    """For the JSON schema of what may be written as one text alone."""
+
+    def __get_pydantic_json_schema__(self, core: CoreSchema, handler: GetJsonSchemaHandler) -> dict[str, Any]:
+        return {"anyOf": [{"type": "string"}, handler(core)]}
+
+
+OR_TEXT = _OrText()
 
 
 class ToSpeed(Strict):
@@ -59,7 +70,7 @@ class ToPlace(Strict):
 class Action(Strict):
     """What a rule does: any of these, at once."""
 
-    speed: dict[str, Annotated[ToSpeed, _short("speed")]] = Field(
+    speed: dict[str, Annotated[ToSpeed, _short("speed"), OR_TEXT]] = Field(
         default_factory=dict,
         description="drives by roller, pattern, nip or shaft, and the speed that each goes to: "
         "{entry: 0 rad/s} or {entry: {surface_speed: 300 mm/s, ramp: 5 ms}}",
@@ -73,12 +84,12 @@ class Action(Strict):
         default_factory=dict,
         description="rollers on an arm, and the torque of the arm's spring in its place at the start",
     )
-    move: dict[str, Annotated[ToPlace, _short("to")]] = Field(
+    move: dict[str, Annotated[ToPlace, _short("to"), OR_TEXT]] = Field(
         default_factory=dict,
         description="guides, planes and meshes with a prescribed `pivot` or `slide`, and the place that each "
         "goes to: {gate: open} or {gate: {to: 20 deg, in: 8 ms}}",
     )
-    enter: Annotated[tuple[str, ...], BeforeValidator(_names)] = Field(
+    enter: Annotated[tuple[str, ...], BeforeValidator(_names), OR_TEXT] = Field(
         default=(),
         strict=False,
         description="streams, or sheets, with `by_rule`: the next sheet of each comes in",
@@ -105,7 +116,7 @@ class Rule(Strict):
     )
     after: TimeOrZero = Field(default=default("0 ms"), description="time from then until it acts")
     once: bool = Field(default=False, description="true: only the first time")
-    in_: Annotated[tuple[Name, ...], BeforeValidator(_names)] = Field(
+    in_: Annotated[tuple[Name, ...], BeforeValidator(_names), OR_TEXT] = Field(
         default=(),
         strict=False,
         alias="in",

@@ -88,7 +88,7 @@ class Stream(Strict):
                 f"count is {self.count}, and there are {len(self.times)} times; leave count out",
                 within=("count",),
             )
-        if self.every is None and "first" in self.model_fields_set:
+        if self.every is None and self.first != 0.0:
             raise fail("from goes with every; leave it out", within=("from",))
         return self
 
