@@ -19,14 +19,12 @@ from mdlgen.backends.exudyn_local.reacting import Reacting
 from mdlgen.backends.exudyn_local.recorder import Recorder
 from mdlgen.backends.exudyn_local.state import Coordinates, workspace
 from mdlgen.backends.exudyn_local.system import EULER, MM, MS, System, build
-from mdlgen.model.passing import far
+from mdlgen.model.passing import NEAR, far
 from mdlgen.model.rotations import euler_parameters
 from mdlgen.model.tables import Floats, Ints, Model
 
 # Of a step: nearer than this to the end of one an event is there.
 SAME = 1e-6
-# Of what run.tolerance lets a place be off: nearer than this to being beyond a plane a sheet is there.
-NEAR = 0.01
 
 # Takes so many steps of a size [s], whether accelerations are known, from a time on [s]; why it could not.
 Go = Callable[[Assembly, int, float, bool, float], str | None]

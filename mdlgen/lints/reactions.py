@@ -11,7 +11,7 @@ import numpy as np
 from mdlgen.conditions import CLOCK, OF_SENSOR, Condition, condition
 from mdlgen.formulas import Amount
 from mdlgen.lints.lint import Lint
-from mdlgen.model.tables import Model, RulePart, SensorPart
+from mdlgen.model.tables import Model, Order, RulePart, SensorPart
 
 _TIMES = 1001  # at which a condition of time alone is looked at (convention)
 
@@ -51,15 +51,23 @@ def fights(model: Model) -> Iterator[Lint]:
     for (one, first), (two, second) in combinations(enumerate(model.reactions.rules), 2):
         if first.when != second.when or first.after != second.after or not _together(first, second):
             continue
-        ordered = {(order.kind, order.name): order.value for order in first.orders}
+        ordered = dict(map(_what, first.orders))
         for order in second.orders:
-            if ordered.get((order.kind, order.name), order.value) != order.value:
+            part, what = _what(order)
+            if ordered.get(part, what) != what:
                 yield Lint(
                     "W166",
                     f"rules.{two}.do.{order.kind}.{order.name}",
                     f"rules.{one} tells {order.name} something else at the same time; this one comes last",
                     "leave one of them out, or give them other conditions",
                 )
+
+
+def _what(order: Order) -> tuple[tuple[str, str], tuple[str | float, float]]:
+    """Of which part an order is, and what it asks for."""
+    if order.kind == "go":
+        return ("go", ""), (order.name, 0.0)
+    return (order.kind, order.name), (order.value, order.ramp)
 
 
 def _reached(model: Model, sensor: SensorPart) -> bool:

@@ -13,6 +13,12 @@ from mdlgen.model.tables import Floats, Ints, Model, SheetPart
 if TYPE_CHECKING:
     from mdlgen.spec.sheet import Sheet
 
+# Of what run.tolerance lets a place be off: nearer than this to being beyond a plane a sheet is there.
+NEAR = 0.01
+# Of a step: nearer than this to the end of one an event is there. A step so short, of a run of 1e6 steps, is
+# as long as the round-off of its times.
+SAME = 1e-9
+
 
 def planes_out(sheet: Sheet) -> tuple[tuple[int, float, float], ...]:
     """The planes beyond which a sheet has left, as `SheetPart.out` has them: the side is the one on which it

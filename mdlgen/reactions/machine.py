@@ -19,7 +19,7 @@ from mdlgen.conditions import CLOCK, condition
 from mdlgen.formulas import Amount
 from mdlgen.model.tables import Model, Order
 from mdlgen.reactions.known import of_states
-from mdlgen.reactions.sensing import FAR, Eye, Poses, between
+from mdlgen.reactions.sensing import FAR, Eye, Passing, Poses, between
 from mdlgen.reactions.sight import Sight
 from mdlgen.units import PER_SECOND
 
@@ -258,6 +258,8 @@ class Machine:
         by = eye.passing(edge.sheet, edge.poses.of(eye.boxes[edge.sheet]))
         since = edge.time - sight.since
         sight.covered = not sight.covered
+        if self._there is not None and not self._there[edge.sheet]:  # it has left the machine
+            by = Passing(sight.speed, sight.skew, sight.position)
         sight.speed, sight.skew, sight.position = by
         numbers: dict[str, Any] = {"speed_mm_per_s": by.speed * PER_SECOND}
         if sight.covered:

@@ -12,6 +12,7 @@ import numpy as np
 from mdlgen.model.axles import STEPS_PER_PERIOD
 from mdlgen.model.tables import Floats, RollerPart
 from mdlgen.model.tables.axle import CONTROLLED, FREE, LIMITER, OPEN, STEPPER, AxlePart
+from mdlgen.results.aims import aimed
 from mdlgen.results.stays import intervals
 
 if TYPE_CHECKING:
@@ -34,7 +35,7 @@ def spin(result: Result, roller: RollerPart) -> Floats:
 
 def shaft(result: Result, roller: RollerPart) -> Floats:
     """Speed of the drive of a roller, or that at which its motor aims [rad/ms], (t,)."""
-    return roller.prescribed(result.time) if roller.speed is not None else np.zeros(len(result.time))
+    return aimed(result, roller, result.time) if roller.speed is not None else np.zeros(len(result.time))
 
 
 def behind(result: Result, roller: RollerPart) -> Floats | None:

@@ -16,6 +16,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from mdlgen.model.tables import Floats, RollerPart
+from mdlgen.results.aims import aimed, corners_of
 from mdlgen.results.motors import axle_torque, shaft, spin
 from mdlgen.results.result import GRIPS, RUBS
 
@@ -118,8 +119,10 @@ def _acceleration(result: Result, roller: RollerPart) -> Floats:
     At a corner of the drive lattice has contacts between those before and after it, exudyn those before; and
     so the acceleration is.
     """
-    time, corners = result.time, roller.corners
-    slopes = np.diff(corners[:, 1]) / np.diff(corners[:, 0])
+    time, corners = result.time, corners_of(result, roller)
+    spans = np.diff(corners[:, 0])
+    # the inertia of a jump is taken at once, between two stored times
+    slopes = np.where(spans > 0.0, np.diff(corners[:, 1]) / np.where(spans > 0.0, spans, 1.0), 0.0)
     inner = np.concatenate([[0.0], slopes, [0.0]])
     near = SAME_TIME * max(result.model.run.duration, float(time[-1])) if len(time) else 0.0
     after = inner[np.searchsorted(corners[:, 0], time + near)]
@@ -127,7 +130,7 @@ def _acceleration(result: Result, roller: RollerPart) -> Floats:
     between = 0.5 * (before + after) if result.solver == "lattice" else before
     found = np.where(time > 0.0, between, after)
     if roller.arm is not None and len(time) > 1:  # the drive turns against the arm
-        swung = result.spin[:, roller.body] @ roller.axis - roller.prescribed(time)
+        swung = result.spin[:, roller.body] @ roller.axis - aimed(result, roller, time)
         found = found + np.gradient(swung, time)
     return found
 
@@ -136,6 +139,6 @@ def _clutch(result: Result, roller: RollerPart) -> Floats:
     """What the shaft turns a roller with through its clutch, as mechanics.driven.clutch has it."""
     way = roller.one_way
     assert way is not None, "asked only of a roller with a clutch"
-    behind = roller.prescribed(result.time) - result.spin[:, roller.body] @ roller.axis
+    behind = aimed(result, roller, result.time) - result.spin[:, roller.body] @ roller.axis
     s = np.maximum(way.direction * behind / way.creep, 0.0)
     return way.direction * 2.0 * way.torque * s * s / (1.0 + s)

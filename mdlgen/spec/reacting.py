@@ -190,8 +190,11 @@ def _action(scene: Scene, k: int) -> None:
 
 def _turns(scene: Scene, name: str, path: tuple[str | int, ...]) -> None:
     """Raises the error for a drive without a sense of its own, in which a surface's speed would be."""
-    if sense(scene, name) == 0.0:
-        message = f"{name} stands by its own drive, so that surface_speed has no sense; give speed"
+    drive = scene.rollers[name].drive
+    surface = None if drive is None else drive.surface_speed  # which is a speed of the drive only later
+    if not surface and sense(scene, name) == 0.0:
+        why = "is driven by a shaft" if drive is None else "stands by its own drive"
+        message = f"{name} {why}, so that surface_speed has no sense; give speed"
         raise fail(message, path)
 
 

@@ -160,3 +160,61 @@ def test_a_note_that_leaves_while_it_is_seen_covers_nothing_any_more() -> None:
     result = lattice(falling([], streams=stream, run={"duration": "300 ms"}), step=1.0)
     assert result.stays is not None
     assert at(result, "cleared")[0] == pytest.approx(result.stays[0, 1], abs=1.0)
+
+
+IDLER = {"center": ["0 mm", "0 mm", "-60 mm"], "axis": "y", "radius": "5 mm", "width": "5 mm", "mass": "1 g"}
+PRESSED = IDLER | {"press": {"direction": "z", "stiffness": "1 N/mm", "preload": "1 N"}}
+HARDER = {"when": "eye covered", "do": {"press": {"idler": "3 N"}}}
+
+
+@SOLVERS
+def test_a_spring_is_pressed_harder_and_energy_is_kept(solver) -> None:
+    # from its balance at 1 mm it swings about 3 mm: x = 3 mm - 2 mm cos(omega t), little damped
+    model = falling([HARDER], rollers={"idler": PRESSED}, run={"duration": "110 ms"})
+    result = solver(model, step=0.05)
+    way = result.position[:, 1, 2] + 60.0
+    still = result.time < 100.0
+    assert np.ptp(way[still]) < 1e-9
+    assert np.ptp(way[~still]) > 3.0
+    assert abs(result.energy.balance_error) < 1e-3
+
+
+def test_a_pass_begins_with_what_the_scene_has_and_not_with_what_the_one_before_was_ordered() -> None:
+    model = falling([HARDER], rollers={"idler": PRESSED}, run={"duration": "110 ms"})
+    result = lattice(model, threads=1)  # passes one after the other, in the same arrays
+    assert np.ptp(result.position[result.time < 99.0, 1, 2]) < 1e-9
+    once = lattice(model, step=result.step, threads=1)
+    assert np.array_equal(once.position, result.position)
+
+
+def test_a_motor_that_a_rule_stops_does_not_stall() -> None:
+    motor = {"torque": "20 N*mm", "speed": "50 rad/s"}
+    own = IDLER | {"drive": {"motor": motor}}
+    stop = {"when": "eye covered", "do": {"speed": {"m": "0 rad/s"}}}
+    result = lattice(falling([stop], rollers={"m": own}, run={"duration": "200 ms"}), step=0.5)
+    assert [event["kind"] for event in result.events if event["kind"] == "stall"] == []
+    summary = result.summary()["rollers"]["m"]
+    # it has come to rest, and has no torque any more
+    assert abs(summary["omega_rad_per_s"]) < 1e-3
+    assert abs(summary["torque_n_mm"]) < 1.0
+
+
+def test_a_sheet_that_was_let_in_comes_after_a_run_is_gone_on_with(tmp_path) -> None:
+    rules = [{"when": "time >= 20 ms", "after": "0.4 ms", "do": {"enter": "infeed"}}]
+    stream = {"infeed": {"of": "note", "by_rule": True, "count": 1}}
+    model = falling(rules, streams=stream, run={"duration": "40 ms", "print_step": "4 ms"})
+    whole = lattice(model, step=0.5)
+
+    class EnoughError(Exception):
+        pass
+
+    def stopped(t: float, *_: object) -> None:
+        if t > 19.0:  # the rule is due, and the sheet has not come
+            raise EnoughError
+
+    (tmp_path / "kept").mkdir()
+    with pytest.raises(EnoughError):
+        lattice(model, step=0.5, progress=stopped, keep=Checkpointer(tmp_path / "kept", every=0.0))
+    on = lattice(model, step=0.5, keep=Checkpointer(tmp_path / "kept", every=0.0))
+    assert on.stays is not None and whole.stays is not None
+    assert on.stays[0, 0] == whole.stays[0, 0] == pytest.approx(20.4, abs=1e-3)

@@ -173,6 +173,8 @@ class _Pass:
     """A pass under way."""
 
     def __init__(self, model: Model, system: System, divided: Division, watch: Watch, times: float):
+        if model.reactions.rules:  # they rewrite records of bodies, which the next pass begins with
+            system = system._replace(bodies=system.bodies.copy())
         self._model, self._system, self._divided, self._watch = model, system, divided, watch
         self._begun = clock.perf_counter()
         self._most = times * divided.outputs * divided.each  # steps

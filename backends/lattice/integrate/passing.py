@@ -16,14 +16,8 @@ from numpy.typing import NDArray
 from mdlgen.backends.lattice.integrate.record import Recorder
 from mdlgen.backends.lattice.integrate.sleep import Sleep
 from mdlgen.model.overlaps.unheld import Unheld
-from mdlgen.model.passing import begun_stays, far
+from mdlgen.model.passing import NEAR, SAME, begun_stays, far
 from mdlgen.model.tables import Floats, Model
-
-# Of what run.tolerance lets a place be off: nearer than this to being beyond a plane a sheet is there.
-NEAR = 0.01
-# Of a step: nearer than this to the end of one an event is there. A step so short, of a run of 1e6 steps, is
-# as long as the round-off of its times.
-SAME = 1e-9
 
 
 class Passing:

@@ -29,6 +29,7 @@ class Reacting:
         for sheet in model.sheets:
             self._boxes[sheet.first : sheet.first + sheet.count] = True
         self.runaway = ""  # why a pass ended
+        sleep.ordered = self._commands.write
         self._ordered: np.ndarray | None = None  # the records that have all orders
 
     def steps(self, t: float, left: Floats, step: float) -> Floats:
@@ -88,7 +89,8 @@ class Reacting:
 
     def carried(self) -> np.ndarray:
         """All that it goes on from, as bytes."""
-        text = json.dumps({"machine": self.machine.kept(), "commands": self._commands.kept()})
+        state = {"machine": self.machine.kept(), "commands": self._commands.kept()}
+        text = json.dumps({**state, "enters": self._passing.enters.tolist()})
         return np.frombuffer(text.encode("ascii"), dtype=np.uint8)
 
     def restore(self, kept: np.ndarray) -> None:
@@ -96,4 +98,5 @@ class Reacting:
         found = json.loads(kept.tobytes())
         self.machine.restore(found["machine"])
         self._commands.restore(found["commands"])
+        self._passing.enters[:] = found["enters"]
         self._ordered = None

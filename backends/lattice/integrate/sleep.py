@@ -25,6 +25,7 @@ loads or gravity change over time.
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from typing import Any
 
 import numpy as np
@@ -87,6 +88,8 @@ class Sleep:
         its pairs before those that are searched that has; None: all of it."""
         from mdlgen.backends.lattice.kernels.integrate import momentum
 
+        # writes what rules ordered into records of bodies that are made anew
+        self.ordered: Callable[[np.ndarray], None] = lambda bodies: None
         self.work, self.steering = work, steering
         self.system, self._chosen = there or (system, np.arange(system.search.first))
         self._model, self._whole, self._recorder = model, system, recorder
@@ -174,6 +177,7 @@ class Sleep:
         self.system, self._chosen = whole, np.arange(whole.search.first)
         if self._sheets.any() or self.gone.any():
             self.system, self._chosen = awake(whole, self._parts, self._sheets, self.gone)
+        self.ordered(self.system.bodies)
         self.system.pairs["beside"][: len(self._chosen)] = self._beside[self._chosen]
         self.work = carried_over(model, self.work, self.system, marks)
         self._recorder.widen(model, whole, self.work.kept)
@@ -208,6 +212,7 @@ class Sleep:
 
         self._sheets = sheets
         self.system, self._chosen = awake(self._whole, self._parts, sheets, self.gone)
+        self.ordered(self.system.bodies)
         self.system.pairs["beside"][: len(self._chosen)] = self._beside[self._chosen]
         state, mid, matrix = room.empty(self.system, forces.WIDE)
         v, l, u, last, earlier = (self._store[name][self.system.nodes] for name in WIDTHS)
