@@ -306,6 +306,7 @@ SUMMARY: dict[str, tuple[str, str]] = {
     },
     "probes.NAME.displacement_mm": ("mm", "displacement at the end, [x, y, z]"),
     "probes.NAME.speed_mm_per_s": ("mm/s", "velocity at the end, [x, y, z]"),
+    "rules": ("", "each rule: its condition `when`, and how often it `acted`"),
     "sensors.NAME.count": ("", "how often a sensor was covered"),
     "sensors.NAME.covered": ("", "whether it is covered at the end"),
     "sensors.NAME.passed": (

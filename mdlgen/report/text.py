@@ -223,6 +223,11 @@ def summary_text(record: dict[str, Any]) -> str:
     if widened := _widened(pairs):
         lines.append(widened)
     lines += [str(outcome) for outcome in outcomes_of(record)]
+    lines += [
+        f"rule {k} never acted: {rule['when']}"
+        for k, rule in enumerate(record.get("rules", ()))
+        if not rule["acted"]
+    ]
     happened = record.get("verdict", {}).get("events", [])
     lines += happened[:MOST_EVENTS]
     if len(happened) > MOST_EVENTS:

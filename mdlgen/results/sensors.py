@@ -36,3 +36,11 @@ def of_sensors(result: Result) -> dict[str, dict[str, Any]]:
         covered = bool(own) and own[-1]["kind"] == "covered"
         found[sensor.name] = {"count": len(passed), "covered": covered, "passed": passed}
     return found
+
+
+def of_rules(result: Result) -> list[dict[str, Any]]:
+    """Each rule as it is listed: its condition `when`, and how often it `acted`."""
+    acts = [row["rule"] for row in result.reactions if row["kind"] == "rule"]
+    return [
+        {"when": rule.when, "acted": acts.count(k)} for k, rule in enumerate(result.model.reactions.rules)
+    ]

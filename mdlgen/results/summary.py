@@ -18,7 +18,7 @@ from mdlgen.results.mark import chaotic, mark
 from mdlgen.results.passing import at_ends, span
 from mdlgen.results.residual import of_sheet
 from mdlgen.results.result import Result
-from mdlgen.results.sensors import of_sensors
+from mdlgen.results.sensors import of_rules, of_sensors
 from mdlgen.results.summary_of_parts import of_part
 from mdlgen.results.tension import Tension
 from mdlgen.results.torques import (
@@ -88,6 +88,7 @@ def summary(result: Result, without: Collection[str] = ()) -> dict[str, Any]:
         **{k.table: {p.name: of_part(result, p) for p in model.parts_of(k.part)} for k in KINDS},
         "probes": {p.name: _probe(result, k) for k, p in enumerate(model.probes)},
         **({"sensors": of_sensors(result)} if model.reactions.sensors else {}),
+        **({"rules": of_rules(result)} if model.reactions.rules else {}),
         "versions": versions(result),
     }
     judges = not {"verdict", "events", "bearing"} & set(without) and len(result.time) > 0

@@ -12,7 +12,7 @@ from mdlgen.results.compare import compare
 from mdlgen.results.result import Result
 
 # of summary.json: a list of events or of names is no number to compare; verdicts have a table of their own
-_LEFT_OUT = ("events", "versions", "estimates", "estimate_scales", "verdict")
+_LEFT_OUT = ("events", "versions", "estimates", "estimate_scales", "verdict", "rules")
 # Numbers nearer to each other than this part of the greatest, or than this, are the same.
 SAME = 1e-9
 # What a design is judged by; where a greatest value was, and what it cost to compute, comes behind it.
