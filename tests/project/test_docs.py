@@ -126,7 +126,7 @@ def test_the_commands_of_the_readme_print_what_it_says(
 ) -> None:
     """The table of six commands: the first code of a row is a command, what it prints follows."""
     page = ROOT / "README.md"
-    scene = next(content for language, _, content in blocks(page) if language == "yaml")
+    (scene,) = (content for language, _, content in blocks(page) if language == "yaml")
     monkeypatch.chdir(tmp_path)
     Path("one_nip.yaml").write_text(scene, "utf-8")
     opened: list[str] = []

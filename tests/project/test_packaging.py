@@ -100,7 +100,7 @@ def yaml_blocks(page: str) -> list[str]:
 
 
 def test_the_readmes_first_scene_has_no_lint():
-    scene = yaml_blocks("README.md")[0]
+    (scene,) = yaml_blocks("README.md")
     model = mdlgen.lower(mdlgen.loads(scene))
     assert lints(model) == []
     assert mdlgen.emit(model, "motionview")

@@ -218,3 +218,15 @@ def test_a_sheet_that_was_let_in_comes_after_a_run_is_gone_on_with(tmp_path) -> 
     on = lattice(model, step=0.5, keep=Checkpointer(tmp_path / "kept", every=0.0))
     assert on.stays is not None and whole.stays is not None
     assert on.stays[0, 0] == whole.stays[0, 0] == pytest.approx(20.4, abs=1e-3)
+
+
+@SOLVERS
+def test_a_graded_note_askew_is_seen_where_its_edge_is(solver) -> None:
+    turn, h = math.radians(7.0), 0.5
+    note = {"boxes": [6, 3], "turn": "7 deg", "grading": {"x": [1, 1, 2, 4, 2, 2]}}
+    result = solver(falling([], note=note, run={"duration": "150 ms"}), step=h)
+    row = next(row for row in result.reactions if row["sensor"] == "eye")
+    way = 40.0 - (30.0 - math.sin(turn)) / math.cos(turn)  # of the edge at y = 1 mm, to the beam
+    speed = math.sqrt(2.0 * 0.002 * way)
+    assert abs(row["time_ms"] - speed / 0.002) <= 0.002 * h * h / 8.0 / speed + 1e-6
+    assert row["skew_deg"] == pytest.approx(7.0, abs=1e-3)
