@@ -12,15 +12,17 @@ STATIC_TOLERANCE = 1e-8
 SMALLEST_STEP = 1e-3
 
 
-def settings_of(exu, count: int, end: float, touching: bool, begin: float = 0.0):
+def settings_of(
+    exu, count: int, end: float, touching: bool, begin: float = 0.0, residual: float = NEWTON_TOLERANCE
+):
     """Exudyn's settings for `count` steps from `begin` to `end` [s], or of the load of a static run, where
-    `end` is 0."""
+    `end` is 0 and `residual` [N] is allowed."""
     s = exu.SimulationSettings()
     s.solution.file.write = False
     s.linearSolver.solverType = exu.LinearSolverType.EigenSparse
     s.parallel.numberOfThreads = 1
     static = s.staticSolver
-    static.newton.absoluteTolerance = NEWTON_TOLERANCE
+    static.newton.absoluteTolerance = min(NEWTON_TOLERANCE, residual)
     static.newton.relativeTolerance = STATIC_TOLERANCE
     static.newton.maxIterations = 40
     static.numberOfLoadSteps = count

@@ -17,7 +17,7 @@ from typing import Any
 import numpy as np
 
 from mdlgen.backends.exudyn_local.assemble import Assembly, assemble
-from mdlgen.backends.exudyn_local.balanced import unbalanced, unbalanced_energy
+from mdlgen.backends.exudyn_local.balanced import allowed_residual, unbalanced, unbalanced_energy
 from mdlgen.backends.exudyn_local.films import entries_of
 from mdlgen.backends.exudyn_local.passing import Parts
 from mdlgen.backends.exudyn_local.place import owners
@@ -349,10 +349,12 @@ def _run(
     start."""
     if assembly.system.free == 0:
         return "nothing in this scene can move"
-    settings = settings_of(exu, count, begin + count * h, known or recorder.touching > 0, begin)
-    mbs = assembly.mbs
+    mbs, static = assembly.mbs, model.run.analysis == "static"
+    system = assembly.system
+    allowed = (allowed_residual(model, system, assembly.q, workspace(system)),) if static else ()
+    settings = settings_of(exu, count, begin + count * h, known or recorder.touching > 0, begin, *allowed)
     try:
-        run = mbs.SolveStatic if model.run.analysis == "static" else mbs.SolveDynamic
+        run = mbs.SolveStatic if static else mbs.SolveDynamic
         if reacting is not None:
             return (
                 None
