@@ -11,8 +11,8 @@ from mdlgen.spec.motor import Motor
 from mdlgen.spec.quantities import default, quantity
 from mdlgen.spec.strict import Strict, fail
 
-# A solver keeps them beside each body, and a text writes them into one expression.
-MOST_CORNERS = 16
+# Ten starts and stops have 40. A solver keeps them beside each body, and a text writes them into one expression.
+MOST_CORNERS = 64
 
 
 def _corner(value: Any) -> Any:

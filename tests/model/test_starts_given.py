@@ -60,7 +60,7 @@ def lowered(*sets: str) -> mdlgen.Model:
             ["planes.plate.press.start=-6 mm"],
             "planes.plate.press.start: -6 mm is beyond the way of the plate",
         ),
-        (["loads.0.profile=[[1 ms, 1]]"], "loads.0.profile: 1 corners; allowed 2 to 16"),
+        (["loads.0.profile=[[1 ms, 1]]"], "loads.0.profile: 1 corners; allowed 2 to 64"),
         (["loads.0.profile=[[1 ms, 1], [1 ms, 2]]"], "loads.0.profile.1: the time 1 ms is not above"),
         (["gravity_profile=[[0 ms, 1], [1 ms, 2000]]"], "gravity_profile.1.1: 2000 is outside"),
         (["gravity_profile=[[0 ms], [1 ms, 2]]"], "gravity_profile.0: expected [time, factor]"),
