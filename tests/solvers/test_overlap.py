@@ -156,7 +156,7 @@ def test_what_was_looked_at_before_changes_nothing(part: str) -> None:
     made = lower(loads(without(scene(part, DOWNWARDS, center="[0 mm, 0 mm, 10.2 mm]"))))
     body, overlaps, fresh = made.roller("r").body, Overlaps(made), Overlaps(made)
     rng, message = np.random.default_rng(3), 0
-    for _ in range(300):
+    for _ in range(75):
         places = made.bodies.position.copy()
         size = 10.0 ** rng.uniform(-3, 2)
         for _ in range(5):
@@ -165,7 +165,7 @@ def test_what_was_looked_at_before_changes_nothing(part: str) -> None:
             fresh._apart[:] = 0.0
             assert found == fresh.found(places, 0.0)
             message += found is not None
-    assert 50 < message < 1400
+    assert 12 < message < 350
 
 
 # -- runs

@@ -52,8 +52,8 @@ PIECES = {
     # to where the nips stop; tests/solvers/test_reacting.py looks at both solvers
     ("register", "exudyn"): ("sheets.note.boxes=[5,2]", "run.duration=34 ms", "run.tolerance=0.02"),
     # all of it, coarser, in tests/solvers/test_reacting_samples.py
-    ("sorter", "auto"): ("run.duration=100 ms",),
-    ("sorter", "exudyn"): ("sheets.note.boxes=[4,1]", "run.duration=30 ms", "run.tolerance=0.05"),
+    ("sorter", "auto"): ("run.duration=40 ms",),
+    ("sorter", "exudyn"): ("sheets.note.boxes=[4,1]", "run.duration=10 ms", "run.tolerance=0.05"),
     ("pick", "exudyn"): ("run.tolerance=0.01",),
     # until the second note has come in; tests/solvers/test_streams.py compares both solvers
     ("stream", "exudyn"): ("run.duration=62 ms", "sheets.note.boxes=[2,2]", "run.step=0.1 ms"),

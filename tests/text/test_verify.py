@@ -36,7 +36,10 @@ COARSE = {
 }
 
 
-@pytest.mark.parametrize("every", [6, 1], ids=["some values", "all values"])
+# all values of a scene with every kind of part are turned below; all of each sample before a release
+@pytest.mark.parametrize(
+    "every", [6, pytest.param(1, marks=pytest.mark.release)], ids=["some values", "all values"]
+)
 @pytest.mark.parametrize("sample", SAMPLES, ids=lambda p: p.stem)
 def test_every_sample_is_the_same_in_text_scripts_deck_and_model(
     sample: Path, every: int, monkeypatch: pytest.MonkeyPatch
