@@ -87,8 +87,8 @@ def cone(force: Floats, normal: Floats, friction: float) -> tuple[Floats, Floats
 
 
 def limit(grips: Grips, wrench: Floats) -> Limit:
-    """Which part of a wrench (F_x, F_y, M) [N, N mm] that pulls, about the origin, contacts hold with one
-    against it; above 1: it stands."""
+    """Part of an applied wrench (F_x, F_y, M) [N, N mm], about the origin, that the contacts hold; above 1:
+    it is held wholly."""
     from scipy.optimize import linprog
 
     # a length and a force of the contacts as units: forces and couples count alike

@@ -100,7 +100,7 @@ def _plane(mirror: Mirror, model: Model, one: PlanePart, two: PlanePart) -> bool
 
 
 def _half_plane(mirror: Mirror, plane: PlanePart) -> float:
-    """A very large number: a plane is wide, so it counts as crossing the mirror plane."""
+    """Infinity: a plane is wide, so it counts as crossing the mirror plane."""
     return math.inf
 
 
