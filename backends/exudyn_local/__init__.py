@@ -1,7 +1,7 @@
 """The reference solver: Exudyn's bodies and integrators, with the force laws of `mdlgen.mechanics`.
 
-All forces stand in one compiled function with its jacobian, so that every contact and bushing is the same
-law that the oracles test, and any curve or share rule costs the same.
+One compiled function evaluates all forces and their jacobian. So contacts and bushings use the laws that the
+tests check, and any curve or share rule costs the same.
 """
 
 from __future__ import annotations

@@ -99,8 +99,8 @@ def air_forces(tables, at, motion, f):
 
 @njit(cache=True, error_model="numpy")
 def air_slopes(tables, at, by_v, motion, entries, values):
-    """What the air adds to the jacobian, -by_v dF/dv: rows and columns into `entries`, (2, n), and `values`.
-    Returns how many; entries of the same place add up."""
+    """Writes the part of the air in the jacobian, -by_v dF/dv: rows and columns into `entries`, (2, n), and
+    `values`. Returns the number of entries; those of the same place add up."""
     film = tables.film
     cells, first, flow, many = film.cells, film.first[0], film.flow, 0
     place_all(tables.bodies, at, motion)
@@ -121,7 +121,7 @@ def air_slopes(tables, at, by_v, motion, entries, values):
                     value = by_v * cells[i].area * way[start + m]
                     entries[0, many], entries[1, many], values[many] = start + m, first + i, -value
                     many += 1
-                    # what pushes it is what a gap opens by
+                    # the gap opens in the direction in which the pressure pushes
                     value *= film.areas[i] / flow[i, 0]
                     entries[0, many], entries[1, many], values[many] = first + i, start + m, value
                     many += 1

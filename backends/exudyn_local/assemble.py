@@ -51,8 +51,9 @@ def assemble(
     begun: Begun | None = None,
     bring: Callable[[float], None] | None = None,
 ) -> Assembly:
-    """Of a Model and its System; the recorder says where the last step ended. `begun`: it begins so, None: as
-    the Model does. `bring` is called with the part of the load in each step of a static run."""
+    """Assembly of a Model and its System; the recorder has the state at the end of the last step. `begun`:
+    the initial state, None: that of the Model. `bring` is called with the part of the load in each step of a
+    static run."""
     from exudyn.itemInterface import (
         Mass1D,
         Node1D,

@@ -1,4 +1,4 @@
-"""Whether a run stands: its energy over time, its forces at rest."""
+"""Checks that a run is valid: by its energy over time, or by its forces at rest."""
 
 from __future__ import annotations
 

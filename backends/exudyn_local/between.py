@@ -20,7 +20,7 @@ MOST_LOOKS = 256
 
 @njit(cache=True, error_model="numpy")
 def set_limits(bodies, pairs, depths):
-    """Of each pair, the depth that ends a run."""
+    """Sets the depth of each pair at which a run ends."""
     for p in range(pairs.size):
         depths[p] = deepest(bodies, pairs[p])
 

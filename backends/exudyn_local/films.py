@@ -57,6 +57,6 @@ def film_of(model: Model, first: int, units: Units) -> Film:
 
 
 def entries_of(film: Film) -> tuple[Ints, Floats]:
-    """Room for what air.air_slopes gives: rows and columns, and values."""
+    """Arrays for the results of air.air_slopes: rows and columns, and values."""
     most = MOST_ENTRIES * film.cells.size
     return np.zeros((2, most), np.int64), np.zeros(most)

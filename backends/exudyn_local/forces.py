@@ -84,7 +84,8 @@ def bush_forces(tables, bush, q, motion, f):
 
 @njit(cache=True, error_model="numpy")
 def _hinge_force(tables, hinge, one, two, q, f):
-    """What a hinge adds to its bushing between two (body, frame), as a step ends; returns the energy."""
+    """Adds the force of a hinge to that of its bushing between two (body, frame), as a step ends; returns the
+    energy."""
     t = bending(one[1], two[1], hinge.axis)
     p = flowed(hinge, t)
     torque = couple(one[1], two[1], hinge.axis, hinge.k * p)

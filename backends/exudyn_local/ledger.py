@@ -48,8 +48,8 @@ from mdlgen.program.kernel import njit
 
 @njit(cache=True, error_model="numpy")
 def _seen(bodies, pair, motion, t, out, pair_out, i):
-    """What a pair does, in `out` with its points, into its row of `pair_out`; returns the power that it takes
-    from prescribed turns."""
+    """Copies the result of a pair, in `out` with its points, into its row of `pair_out`; returns the power
+    that it takes from prescribed rotations."""
     row, power = pair_out[i], 0.0
     for k in range(OUT):
         row[k] = out[k]

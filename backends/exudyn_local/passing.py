@@ -178,7 +178,8 @@ class Parts:
         return NEAR * self._model.run.tolerance * max(self._model.sheets[k].size) / 10.0
 
     def _due(self, t: float) -> tuple[NDArray[np.bool_], str | None]:
-        """Which sheets are not there from the time t [s] on, and why one cannot come in."""
+        """Sheets that are not present from the time t [s] on, and the reason why one cannot come in, or
+        None."""
         gone, (x, r, _, _) = self._gone.copy(), self._recorder.motion
         for k in np.flatnonzero(~self._gone).tolist():
             sheet = self._model.sheets[k]
@@ -193,11 +194,11 @@ class Parts:
         return gone & ~comes, wrong
 
     def _boxes(self, sheets: NDArray[np.bool_]) -> NDArray[np.bool_]:
-        """Which bodies are of some sheets, (bodies,)."""
+        """True for bodies of some sheets, (bodies,)."""
         return np.append(sheets, False)[self._sheet]
 
     def _change(self, gone: NDArray[np.bool_], t: float) -> None:
-        """Goes on without the sheets `gone`, and with all others."""
+        """Continues without the sheets `gone`, and with all others."""
         assembly = self.assembly
         left, came = gone & ~self._gone, self._gone & ~gone
         data = assembly.mbs.systemData

@@ -16,23 +16,23 @@ FIELD = 4
 # Rates of these coordinates are a stretch [m] or turn [rad] over FINE. The jacobian moves rates by 1e-6, that
 # is 1e-9 m of a stretch of micrometres.
 FINE = 1e-3
-# Residuals of rates count in Newton's method as the force that they make in this time [s]. With the speeds of
+# Newton's method weights residuals of rates by this time [s], which converts them to forces. At the speeds of
 # sheets they are then as large as the forces of contacts.
 WEIGHT = 1e-3
 
 PATCH = np.dtype(
     [
-        ("a", "i8"),  # first body, of a sheet that rolls its first box; and the second
+        ("a", "i8"),  # first body (for a sheet that rolls, its first box), and the second.
         ("b", "i8"),
-        ("k", "f8"),  # k_t [N/m]
-        ("alone", "b1"),  # has one pair
-        ("axis", "f8", 3),  # of the roller that a sheet rolls on, 0: none
-        # at the state that was evaluated last:
-        ("force", "f8"),  # N, 0: nothing touches [N]
-        ("centre", "f8", 3),  # c from the centre of the second body, global [m]
-        ("normal", "f8", 3),  # to the first body
-        ("arms", "f8"),  # mean square of the distances from c, weighted by normal forces [m^2]
-        ("rate", "f8"),  # r, at which rolling lets go of the stretch [1/s]
+        ("k", "f8"),  # k_t [N/m].
+        ("alone", "b1"),  # true where it has one pair.
+        ("axis", "f8", 3),  # axis of the roller on which a sheet rolls, 0: none.
+        # The following fields are those of the state that was evaluated last.
+        ("force", "f8"),  # N, 0: nothing touches [N].
+        ("centre", "f8", 3),  # c from the centre of the second body, global [m].
+        ("normal", "f8", 3),  # normal to the first body.
+        ("arms", "f8"),  # mean square of the distances from c, weighted by normal forces [m^2].
+        ("rate", "f8"),  # r, at which rolling releases the stretch [1/s].
         ("sums", "f8", 16),  # over points, columns as in mechanics.bristle
     ]
 )

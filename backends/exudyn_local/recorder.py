@@ -143,10 +143,10 @@ class Recorder:
                 self._store(time)
 
     def plan(self, h: float) -> None:
-        """Which times are stored: the print times, at the first step that reaches them, and the end."""
+        """Sets the stored times: the print times, at the first step that reaches them, and the end."""
         run = self.model.run
         outputs = max(1, round(run.duration / run.print_step))
-        # a hair early, so that rounding never delays an output by a whole step
+        # 1e-6 of a step early, so that rounding never delays an output by a whole step
         self._due = np.arange(1, outputs + 1) * (run.duration / outputs) * MS - 1e-6 * h
 
     def after_step(self, mbs, t: float) -> bool:
@@ -195,13 +195,13 @@ class Recorder:
         self._through += abs(work)
 
     def renew(self, t: float) -> None:
-        """What drives and springs do changed at a time: energies and powers are those from then on."""
+        """Recomputes energies and powers at a time at which drives or springs have changed."""
         at = Coordinates(self._q, self._v, t)
         ledger(self._tables, at, self._work, np.zeros_like(self._pairs), self._totals)
 
     @property
     def motion(self) -> Motion:
-        """Of all bodies as the last step ended, in SI units."""
+        """Motion of all bodies at the end of the last step, in SI units."""
         return self._work.motion
 
     @property

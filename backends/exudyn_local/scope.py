@@ -1,4 +1,4 @@
-"""What this solver can represent."""
+"""Checks that this solver can represent a Model."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What Exudyn's solvers are set to."""
+"""Settings of Exudyn's solvers."""
 
 from __future__ import annotations
 

@@ -146,7 +146,7 @@ def _refined(
     complete run is the result, with its estimate."""
 
     def affords(last: Result) -> bool:
-        """Whether there is time for a run at half the step."""
+        """True if there is time for a run at half the step."""
         took = 2.0 * last.wall_s
         return cost(system, 2 * last.steps) <= REFINED and clock.perf_counter() + took <= until
 

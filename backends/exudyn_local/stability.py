@@ -1,4 +1,4 @@
-"""Whether a static balance stands: its stiffness, on what may move, must have no direction that falls."""
+"""Stability of a static balance: its stiffness for all possible motions must have no negative direction."""
 
 from __future__ import annotations
 
@@ -51,8 +51,8 @@ def falling(system: System, pattern: Pattern, q: Floats, work: Work) -> int:
 
 
 def _moves(system: System, q: Floats):
-    """What may move, as columns (free, m): three ways and three turns of a box, one of all else; and the
-    inertia of each."""
+    """Possible motions as columns (free, m): three translations and three rotations of a box, one of every
+    other body; and the inertia of each."""
     from scipy.sparse import csc_matrix
 
     rows: list[int] = []

@@ -1,4 +1,4 @@
-"""What compiled code of this solver works on, by names."""
+"""Records of arrays on which compiled code of this solver works."""
 
 from __future__ import annotations
 
@@ -18,15 +18,16 @@ if TYPE_CHECKING:
     from mdlgen.backends.exudyn_local.patches import Sticking
     from mdlgen.backends.exudyn_local.system import System
 
-# Of the energies at a state [J, W]: kinetic, elastic, potential, dissipated power, power of drives and loads;
-# and what the springs of patches store, also among the elastic ones, out of what counts as dissipated power.
+# Columns of the energies at a state [J, W]: kinetic, elastic, potential, dissipated power, power of drives
+# and loads; and the energy that the springs of patches store. That is part of the elastic energy, and has
+# been counted as dissipated.
 KINETIC, ELASTIC, POTENTIAL, LOST, DRIVING, HELD, TOTALS = 0, 1, 2, 3, 4, 5, 6
-# What is seen of a pair at a state: what it does, and what it turns; and with its points.
+# Numbers in the result of a pair at a state: without and with its points.
 SEEN, WIDE = OUT + TURNING, OUT + 1 + POINT * MOST_POINTS
 
 
 class Tables(NamedTuple):
-    """Records of what a run is of, see system.System."""
+    """Records of the scene of a run, see system.System."""
 
     bodies: np.ndarray
     bushings: np.ndarray

@@ -13,24 +13,26 @@ from mdlgen.mechanics.point import DEPTH, FORCE_A, FORCE_B, PRESSING, STORED
 from mdlgen.model.impact import approach_time, impact_time, lasting
 from mdlgen.model.tables import OF_MACHINE, Model
 
-# A flexible sheet in nips: travel is right to 1e-4 at this step (see the bench), and second order below.
+# A flexible sheet in nips: the error of its travel is 1e-4 at this step (see the bench), of second order
+# below.
 FLEXIBLE_STEP = 0.05  # ms at tolerance 1e-3
 # A rigid block that bounces: steps in one contact; 50 give 0.1 % of the rebound.
 STEPS_IN_CONTACT = 50.0  # at tolerance 1e-3
 # The boxes of a flexible sheet that start in a part, or that fly at one: 20 steps give 1 %.
 STEPS_OF_BOXES = 20.0
-# Contacts at the start hold each other where what is left of their forces is below this part of their sum.
+# Contacts at the start balance each other where their resultant is below this part of the sum of their
+# forces.
 UNBALANCED = 0.1
-# Below this restitution the force drops sharply at the greatest depth and wants finer steps.
+# Below this restitution the force drops sharply at the greatest depth, which requires smaller steps.
 SOFT_RESTITUTION = 0.4
 
 
-# Wall time of a step: Python between the kernels, and for each unknown, as measured in 2026 [s].
+# Wall time of a step: of Python between the kernels, and per unknown, as measured in 2026 [s].
 STEP_COST, UNKNOWN_COST = 5e-5, 6e-6
 
 
 def choose_steps(model: Model, system: System, work: Work) -> tuple[int, float]:
-    """(number of steps, step [s]) that the Model's tolerance asks for, so that outputs fall on steps."""
+    """(number of steps, step [s]) that the Model's tolerance requires, so that outputs fall on steps."""
     run = model.run
     wanted = min(_from_tolerance(model), overlap_step(model, system, work))
     outputs = max(1, round(run.duration / run.print_step))
@@ -45,17 +47,17 @@ def given_steps(model: Model, step: float) -> tuple[int, float]:
 
 
 def cost(system: System, steps: float) -> float:
-    """What a run costs [s], by its counts: the same on every machine, so that what is run does not depend on
-    how fast it is."""
+    """Estimated time of a run [s], from its counts. It is the same on every machine, so that the choice of
+    runs does not depend on the speed of the machine."""
     return steps * (STEP_COST + UNKNOWN_COST * system.free)
 
 
 def overlap_step(model: Model, system: System, work: Work) -> float:
     """Step [ms] for boxes that contacts push away as the run begins; inf where there are none, or where
-    contacts hold each other.
+    contacts balance each other.
 
-    What a contact has stored at the start is the energy of an impact of which the second half is to come.
-    What is under a pressed roller or on a pressed plate is let in its balance, and does not count.
+    The energy that a contact has stored at the start is that of an impact whose second half follows. Boxes
+    under a pressed roller or on a pressed plate are in balance, and do not count.
     """
     pairs, bodies = system.pairs, system.bodies
     if not len(pairs):

@@ -60,8 +60,8 @@ PAIR = np.dtype([*BODIES, *CONTACT])
 
 
 class Elements(NamedTuple):
-    """What the jacobian is a sum of: blocks of bushings between bodies, corners, pairs, slides, clutches,
-    loads, and patches."""
+    """Elements of which the jacobian is the sum: blocks of bushings between bodies, corners, pairs, slides,
+    clutches, loads, and patches."""
 
     block_start: Ints  # bushings of block i: block_start[i] ... block_start[i + 1] - 1
     dofs: Ints  # coordinates of each element, concatenated
@@ -90,7 +90,7 @@ class System(NamedTuple):
 
     @property
     def tables(self) -> Tables:
-        """What every kernel starts with."""
+        """Records that every kernel takes first."""
         return Tables(
             bodies=self.bodies,
             bushings=self.bushings,

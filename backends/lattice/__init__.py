@@ -15,7 +15,7 @@ __all__ = ["BACKEND", "check", "solve"]
 
 
 def check(model: Model) -> None:
-    """Raises RefusedError by name for what this solver cannot represent."""
+    """Raises RefusedError, with the name, for features that this solver cannot represent."""
     from mdlgen.backends.lattice import scope
 
     scope.check(model)

@@ -1,9 +1,9 @@
 """The Model as record arrays for compiled code, in the Model's units (mm, N, g, ms, rad).
 
-Free boxes are the nodes of the lattice, six unknowns each; they are numbered so that neighbours stand close
-(along the shorter side of the sheet first), which makes the matrix a band. Free rollers turn (one unknown),
-pressed ones also slide, and those on an arm swing (one more), and pressed plates slide: the border of the
-matrix. Everything else is held or driven.
+Free boxes are the nodes of the lattice, with six unknowns each. They are numbered along the shorter side of
+the sheet first, so that neighbours have close numbers and the matrix is a band. Free rollers turn (one
+unknown), pressed ones also slide, those on an arm swing (one more), and pressed plates slide: these unknowns
+are the border of the matrix. Everything else is held or driven.
 """
 
 from __future__ import annotations
@@ -77,33 +77,33 @@ PAIR = np.dtype(
         ("row", "i8"),  # of the contacts
         ("mark", "i8"),  # its place among the marks of pairs that have touched
         *CONTACT,
-        ("sticking", "f8"),  # of two boxes: k_t for 1 of k [mm^0.5], 0: friction does not stick
+        ("sticking", "f8"),  # k_t/k of two boxes [mm^0.5], 0: friction does not stick
         ("held", "i8"),  # its place among Tables.held, from 1 on; 0: no bristle holds it
     ]
 )
-# A body is seen in the plane normal . x = at; its axes are those of the other one seen there, times `signs`.
+# A mirrored body: the image of body `of` in the plane normal . x = at, with its axes times `signs`.
 IMAGE = np.dtype([("body", "i8"), ("of", "i8"), ("normal", "f8", 3), ("at", "f8"), ("signs", "f8", 3)])
 
 
 class System(NamedTuple):
-    """What a run is of. The last row of the bodies is the ground."""
+    """All records of the scene of a run. The last row of the bodies is the ground."""
 
-    bodies: np.ndarray  # BODY, (n + 1,)
-    joints: np.ndarray  # JOINT
-    pairs: np.ndarray  # PAIR, and room for those that are searched
-    loads: np.ndarray  # LOAD
+    bodies: np.ndarray  # BODY, (n + 1,).
+    joints: np.ndarray  # JOINT.
+    pairs: np.ndarray  # PAIR, with unused rows for those that are searched.
+    loads: np.ndarray  # LOAD.
     gravity: Floats
-    nodes: Ints  # body of each node
-    sheets: Ints  # and its sheet; the free boxes of a sheet all hang together
-    offsets: Ints  # how many nodes apart two may be that a joint couples, from 0 on
-    border: int  # unknowns of rollers and pressed plates
-    folded: int  # bushings that share a joint with another one
-    points: np.ndarray  # of the curves that joints follow, mechanics.curve.POINT
-    images: np.ndarray  # IMAGE: of boxes that joints of a halved scene need
-    mirror: Mirror | None  # the plane that halves it, None: this is the whole
-    search: Search  # of boxes of two sheets that are near each other
-    marks: int  # how many pairs there can be
-    bristles: np.ndarray  # as of Tables
+    nodes: Ints  # body of each node.
+    sheets: Ints  # sheet of each node; the free boxes of a sheet are all connected.
+    offsets: Ints  # distances in nodes between two nodes that a joint couples, from 0 on.
+    border: int  # number of unknowns of rollers and pressed plates.
+    folded: int  # number of bushings that share a joint with another one.
+    points: np.ndarray  # points of the curves that joints follow, mechanics.curve.POINT.
+    images: np.ndarray  # IMAGE of boxes that joints of a halved scene need.
+    mirror: Mirror | None  # plane that halves it, None: this is the whole scene.
+    search: Search  # neighbour search for boxes of two sheets.
+    marks: int  # number of all possible pairs.
+    bristles: np.ndarray  # as in Tables.
     held: np.ndarray
     yields: Yielding
     shapes: Shapes
@@ -112,18 +112,18 @@ class System(NamedTuple):
 
     @property
     def reach(self) -> int:
-        """How many nodes apart two are that a joint couples, at most."""
+        """Greatest distance in nodes between two nodes that a joint couples."""
         return int(self.offsets[-1])
 
     @property
     def moving(self) -> Ints:
-        """Bodies that turn or slide: rollers, pressed plates, and what a law of its place moves."""
+        """Bodies that turn or slide: rollers, pressed plates, and bodies with a prescribed place."""
         turns, slides = (self.bodies["axis"] != 0.0).any(axis=1), self.bodies["slide"] >= 0
         return np.flatnonzero(turns | slides | (self.bodies["swings"] >= GATE))
 
     @property
     def runs(self) -> Ints:
-        """Joints of one sheet that follow each other: the first, the end, and the number of the sheet."""
+        """Consecutive joints of one sheet: the first, the end, and the number of the sheet."""
         sheet = np.full(len(self.bodies), -1, np.int64)
         sheet[self.nodes] = self.sheets
         of = np.maximum(sheet[self.joints["a"]], sheet[self.joints["b"]])  # one end may be fixed
@@ -133,7 +133,7 @@ class System(NamedTuple):
         return np.stack([begins, ends, of[begins]], axis=1)
 
     def _corners(self) -> np.ndarray:
-        """The corners with the runs that their joints are in."""
+        """The corners, with the number of the run of their joints."""
         corners, runs = self.corners.copy(), self.runs
         for k in range(len(runs)):
             corners["run"][corners["sheet"] == runs[len(runs) - 1 - k, 2]] = len(runs) - 1 - k
@@ -141,7 +141,7 @@ class System(NamedTuple):
 
     @property
     def tables(self) -> Tables:
-        """What compiled code takes first."""
+        """Records of the scene for compiled code."""
         return Tables(
             bodies=self.bodies,
             joints=self.joints,
@@ -166,7 +166,7 @@ class System(NamedTuple):
 
 
 def boxes_of(bodies: np.ndarray, nodes: Ints) -> Floats:
-    """What steps ask of free boxes most often, see state.Tables."""
+    """Most used values of free boxes, see state.Tables."""
     own = bodies[nodes]
     boxes = np.zeros((len(nodes), OWN))
     boxes[:, OWN_MASS], boxes[:, OWN_SIZE] = own["mass"], own["half"][:, 0] + own["half"][:, 1]
@@ -176,8 +176,8 @@ def boxes_of(bodies: np.ndarray, nodes: Ints) -> Floats:
 
 
 def thinnest_of(bodies: np.ndarray, regions: np.ndarray) -> float:
-    """Half thickness of the thinnest box of the sheets of all regions; where there are none, as if no two
-    boxes could come through each other."""
+    """Half thickness of the thinnest box of the sheets of all regions; a very large number where there are
+    none, since no two boxes can pass through each other."""
     half, least = bodies["half"][:, 2], 1e300
     for first, many in (("a", "many_a"), ("b", "many_b")):
         for row in regions:
@@ -186,7 +186,7 @@ def thinnest_of(bodies: np.ndarray, regions: np.ndarray) -> float:
 
 
 def build(model: Model, fold: bool = True) -> System:
-    """Arrays of a Model; `fold`: equal bushings side by side as one joint."""
+    """Arrays of a Model; `fold`: merges adjacent equal bushings into one joint."""
     bodies, nodes, border = _bodies(model)
     joints, of = _joints(model, fold)
     listed, found = _pairs(model)
@@ -272,8 +272,8 @@ def _fold(single: np.ndarray) -> tuple[np.ndarray, Ints]:
 
 
 def _alike(one: np.ndarray, two: np.ndarray) -> np.ndarray:
-    """Equal but for their place, which is the same seen from both bodies; and linear, since two curves at
-    different gaps do not add up to one."""
+    """Tests whether bushings are equal except for their place, which must be the same relative to both
+    bodies. They must be linear, since two curves at different gaps do not add up to one."""
     same = (one["first"] < 0) & (two["first"] < 0)
     for name in ("k", "c", "fa", "fb"):
         same &= (one[name] == two[name]).all(axis=1)
@@ -295,7 +295,7 @@ def _axes(joints: np.ndarray, end: str) -> np.ndarray:
 
 
 def _pairs(model: Model) -> tuple[np.ndarray, np.ndarray]:
-    """The Model's pairs but those of two sheets, and the laws of these, one for each contact."""
+    """The Model's pairs except those of two sheets, and the laws of the latter, one for each contact."""
     kind = model.contacts.kind
     kept = np.flatnonzero(kind[model.pairs.contact] != BOX_BOX)
     searched = np.flatnonzero(kind == BOX_BOX)
@@ -307,14 +307,14 @@ def _pairs(model: Model) -> tuple[np.ndarray, np.ndarray]:
 
 
 def partner(model: Model, pair: Any) -> int:
-    """The body that the second one of a pair is called by: a mesh, where that moves with another."""
+    """Body whose name stands for the second one of a pair: a mesh that moves with another body."""
     return (
         model.meshes[int(pair["mesh"])].body if pair["kind"] in (BOX_MESH, CYLINDER_MESH) else int(pair["b"])
     )
 
 
 def offsets(bodies: np.ndarray, joints: np.ndarray, corners: np.ndarray) -> Ints:
-    """How many nodes apart two may be that a joint or a corner couples, from 0 on."""
+    """Distances in nodes between two nodes that a joint or a corner couples, from 0 on."""
     ends = [np.stack([joints["a"], joints["b"]])]
     for i in (0, 1):
         for j in (2, 3):

@@ -10,7 +10,7 @@ from mdlgen.model.tables import Ints, Model
 
 
 def bristles_of(model: Model, bodies: np.ndarray, pairs: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """BRISTLE of each patch, HELD of each pair of boxes and parts that is in one; notes these in `pairs`.
+    """BRISTLE of each patch, HELD of each pair of boxes and parts in one; stores these numbers in `pairs`.
 
     All begin without force.
     """
@@ -25,8 +25,8 @@ def bristles_of(model: Model, bodies: np.ndarray, pairs: np.ndarray) -> tuple[np
 
 
 def cuts(bristles: np.ndarray, image: Ints) -> bool:
-    """Tests whether a plane in which bodies have these images cuts a patch of a sheet on a roller. Half of
-    the patch would turn with the sheet, which the whole does not."""
+    """True if a plane in which bodies have these images cuts a patch of a sheet on a roller. Half of a patch
+    would turn with the sheet, but the whole does not."""
     rolls = (bristles["axis"] != 0.0).any(axis=1)
     return bool((rolls & (image[bristles["b"]] == bristles["b"])).any())
 
@@ -34,8 +34,8 @@ def cuts(bristles: np.ndarray, image: Ints) -> bool:
 def halved(
     bristles: np.ndarray, held: np.ndarray, pairs: np.ndarray, near: np.ndarray, own: np.ndarray
 ) -> tuple[np.ndarray, np.ndarray]:
-    """Bristles and held pairs of one side of a scene, whose `pairs` are those `near` of the whole; `own`: of
-    each body, whether it is its own image. Two such bodies have half of their contact on this side."""
+    """Bristles and held pairs of one side of a scene, whose `pairs` are those `near` of the whole; `own`:
+    true for each body that is its own image. Two such bodies have half of their contact on this side."""
     bristles, held = bristles.copy(), held[near[held["pair"]]].copy()
     bristles["k"][own[bristles["a"]] & own[bristles["b"]]] *= 0.5
     held["pair"] = (np.cumsum(near) - 1)[held["pair"]]
@@ -51,7 +51,7 @@ def begin(bristles: np.ndarray) -> None:
 
 
 def moved(old: np.ndarray, new: np.ndarray) -> np.ndarray:
-    """The bristles `new` of a System, in the states that those of another one have; new ones have none."""
+    """The bristles `new` of a System, with the states of those of another one; added ones begin without."""
     places = {tuple(key): k for k, key in enumerate(old[["row", "a", "b"]].tolist())}
     found = new.copy()
     for k, key in enumerate(new[["row", "a", "b"]].tolist()):

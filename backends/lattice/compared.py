@@ -16,13 +16,13 @@ from mdlgen.results import audit
 from mdlgen.results.estimates import NOT_KNOWN, by_finer, estimated, open_yet, unlike
 from mdlgen.results.result import Result
 
-# Of a run at a step that is given, where one at twice that step is none, or quite another one.
+# Reasons why the error of a run at a given step is unknown: the other run failed, or differs too much.
 UNKNOWN = f"{NOT_KNOWN}: a run at twice the step"
 FINER = f"{NOT_KNOWN}: a run at finer steps"
 
 
 def thinned(model: Model) -> Model:
-    """The Model with so many stored times that COMPARED states are enough, each of which it has anyway."""
+    """The Model with a subset of its stored times that needs at most COMPARED states, about."""
     outputs = max(1, round(model.run.duration / model.run.print_step))
     least = math.ceil(outputs * len(model.bodies.name) / COMPARED)
     each = next(k for k in range(least, outputs + 1) if outputs % k == 0) if least <= outputs else 1
@@ -36,10 +36,11 @@ def compared_with_coarser(
 ) -> Result:
     """The result with its estimate, from the runs `before` at twice its step, four times its step, ...
 
-    `again(times)` runs at so many times its step: at twice where there is none, and once more coarsely where
-    two leave open whether the tolerance is met, or differ by a large part, since three show how errors fall;
-    None: no other is made. Where there is none, and that at twice its step fails or differs by a large part
-    that does not fall, nothing shows how far off the result is, which it says.
+    `again(times)` runs at a multiple of its step; None: no other run is made. It is called for twice the step
+    where `before` is empty. It is called once more, for four times the step, where two runs do not show
+    whether the tolerance is met, or differ by a large part: three show how errors fall. Where the run at
+    twice the step fails, or differs by a large part that does not fall, the result states that its error is
+    unknown.
     """
     found = [run for run in before if ended(run)]
     for run in found:
@@ -74,7 +75,7 @@ def compared_with_finer(result: Result, finer: Result) -> Result:
 
 
 def in_time(result: Result, deadline: Deadline) -> Result:
-    """A complete run, which says so where `run.limit` left no time to compare it with another one."""
+    """The result of a complete run; it states where `run.limit` left no time for a comparison."""
     late = result.model.run.limit is not None and not deadline.allows(0.5 * result.wall_s)
     if result.error_estimate is not None or result.error_unknown or not late:
         return result
@@ -83,11 +84,11 @@ def in_time(result: Result, deadline: Deadline) -> Result:
 
 
 def ended(run: Result) -> bool:
-    """Whether a run came to its end; one whose energies do not balance still shows how errors fall."""
+    """True if a run reached its end; one whose energies do not balance still shows how errors fall."""
     finite = all(np.isfinite(a).all() for a in (run.position, run.velocity, run.spin))
     return finite and bool(run.time[-1] >= run.model.run.duration * (1.0 - 1e-9))
 
 
 def reason(run: Result) -> str:
-    """Why a run failed, without advice on the step, which the one that it is compared with has."""
+    """Reason why a run failed, without advice on the step: the run it is compared with has another step."""
     return run.status.partition(f"; {audit.ADVICE}")[0]

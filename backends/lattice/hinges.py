@@ -11,11 +11,11 @@ from mdlgen.model.tables import Floats, Ints, Model
 
 
 class Yielding(NamedTuple):
-    """What of a System yields; no records: it is elastic."""
+    """Plastic hinges of a System; no records: it is elastic."""
 
     hinges: np.ndarray  # mechanics.plastic.HINGE
     of_row: Ints  # hinge of each row of Model.plastic
-    # how often each hinge counts in the whole scene: 2 where its image is left out (symmetry.mirror)
+    # number of hinges of the whole scene for each one: 2 where its image is eliminated (symmetry.mirror)
     times: Floats
 
 
@@ -63,7 +63,7 @@ def begin(hinges: np.ndarray) -> None:
 
 
 def plastic_rows(yields: Yielding) -> Any:
-    """Plastic rotation of each row of Model.plastic [rad], and what all hinges dissipated [N mm] in the last
-    place."""
+    """Plastic rotation of each row of Model.plastic [rad]; last, the energy that all hinges dissipated
+    [N mm]."""
     hinges = yields.hinges
     return np.append(hinges["plastic"][yields.of_row], hinges["lost"] @ yields.times)

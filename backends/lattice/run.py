@@ -1,4 +1,4 @@
-"""Runs a Model: fixed steps, halved where they do not converge, and the whole again at half the step until
+"""Runs a Model with fixed steps, halved where they do not converge. Repeats the run at half the step until
 the difference is within the tolerance."""
 
 from __future__ import annotations
@@ -50,10 +50,10 @@ from mdlgen.results.estimates import NOT_KNOWN, SAME_STEPS, estimated, marked, w
 from mdlgen.results.result import Result
 from mdlgen.runs.checkpoint import Checkpointer
 
-Report = tuple[float, float, int, int]  # what progress is called with
+Report = tuple[float, float, int, int]  # arguments of progress
 
 
-# Rules that leave out what a run does not need, each of which a run can do without.
+# Rules that save work; each can be disabled for a run.
 FOLDING, FACTORS, SYMMETRY, SLEEP = "folding", "factors", "symmetry", "sleep"
 
 
@@ -66,18 +66,18 @@ def solve(
     keep: Checkpointer | None = None,
     threads: int = 1,
 ) -> Result:
-    """Run a Model; `progress(time, end, steps, touching)` is called as it goes (times in ms).
+    """Run a Model; `progress(time, end, steps, touching)` is called during the run (times in ms).
 
-    `step` [ms], or the Model's own, is taken as it is, and estimates come of a run at twice the step.
-    Without either the step follows from the tolerance: the run is repeated at half the step until what it
-    judges is estimated to be within it (see `results.estimates`); where it never is, the finest complete run
-    is the result, marked as inaccurate. With the argument `step` nothing is compared. A failed run returns a
-    Result with its reason; RefusedError is raised for what the solver cannot represent.
+    The Model's own step is used as it is, and the error is estimated by a run at twice the step. With the
+    argument `step` [ms] nothing is compared. Without either the step follows from the tolerance: the run is
+    repeated at half the step until the estimated errors are within it (see `results.estimates`). Where they
+    never are, the finest complete run is the result, marked as inaccurate. A failed run returns a Result with
+    its reason; RefusedError is raised for features that the solver cannot represent.
 
-    `without` names rules that are not to be used: FOLDING of equal bushings, keeping of FACTORS over steps,
-    SYMMETRY of both sides, SLEEP of sheets at rest. `keep` is given states to go on from, and a run goes on
-    from those that it has, to the same bits. `threads` is how many passes may go on at the same time,
-    to the same bits as well: two, of which progress is that of the finer one, or one after the other.
+    `without` names rules that are disabled: FOLDING of equal bushings, reuse of FACTORS over steps, SYMMETRY
+    of both sides, SLEEP of sheets at rest. `keep` stores states; a run resumes from those that it has,
+    bitwise identical. `threads` is the number of passes that may run in parallel, also bitwise identical:
+    with two, progress is that of the finer pass.
     """
     check(model)
     started = clock.perf_counter()
@@ -88,7 +88,7 @@ def solve(
         while (wide := wider(model, result.position[-1])) is not None and wide is not model:
             model, system = wide, build(wide, fold=FOLDING not in without)
             result = rest(model, system, arrays(model, system))
-        # what a run at rest calls is compiled, or loaded, as it goes: all but its wall time
+        # a static run compiles or loads its functions on demand: that time is all except its wall time
         result.build_s = compiled - started
         result.compile_s = clock.perf_counter() - compiled - result.wall_s
         return result
@@ -102,7 +102,7 @@ def solve(
     begun = clock.perf_counter()
     deadline = Deadline.of(model)
     watch = Watches(progress, keep, SLEEP not in without).until(deadline)
-    # numba's code keeps the lock of Python
+    # numba's code holds Python's global lock
     together = threads > 1 and PROGRAM.loaded
     if keep is not None and not (together and threads == 2):
         keep.free.set()
@@ -127,8 +127,8 @@ def _given(
     compared: bool,
     together: bool,
 ) -> Result:
-    """A run of that number at a step that is given, `compared` with one at twice that step, or at half of the
-    steps that it takes where there is none of so few steps, or both are divided to the same."""
+    """A run at a given step, stored by its `number`; `compared` with one at twice that step. The other run
+    has half the step where twice the step would be too few steps, or is rounded to the same step."""
     made = MAY_MAKE * accuracy(model) / 1e-3
     h = division(model, wanted).step
     fewer, begun = thinned(model), clock.perf_counter()
@@ -138,14 +138,14 @@ def _given(
 
     def alone(result: Result) -> Result:
         if not together:
-            PROGRAM.release()  # else the arrays of this pass stay beside those of what follows
+            PROGRAM.release()  # frees the arrays of this pass before the next one allocates its own
         return result
 
     def first() -> Result:
         return alone(one_pass(model, system, wanted, watch(number), made=made, anew=anew))
 
     def judged(result: Result, coarse: Callable[[], Result]) -> Result:
-        """By a run at twice the step, or a finer one."""
+        """The result with its estimate from a run at twice the step, or from a finer one."""
         if not result.ok:
             return result
         late, took = watch.deadline, clock.perf_counter() - begun
@@ -173,9 +173,9 @@ def _given(
 class Search:
     """Halves the step until estimates are within the tolerance.
 
-    Where they never are the finest run that is complete is the result, with its estimate. A run that ends
-    early has its reason from the physics of the scene or from its step: it is reported where the next finer
-    run ends at the same time, and its energies balance.
+    Where they never are, the finest complete run is the result, with its estimate. The reason for which a run
+    ends early may be the physics of the scene or the step. It is reported where the next finer run ends at
+    the same time and its energies balance.
     """
 
     def __init__(self, model: Model, system: System, watch: Watches):
@@ -184,10 +184,10 @@ class Search:
         self._runs: list[Result] = []  # the last one first
         self._late = watch.deadline
         self._limited = model.run.limit is not None
-        self._stopped = False  # since a finer pass would take too long
+        self._stopped = False  # true where a finer pass would take too long
 
     def result(self, together: bool) -> Result:
-        """The last run; `together`: two passes at the same time, where both are needed or likely to be."""
+        """The last run; `together`: runs two passes in parallel, where both are needed or likely to be."""
         ready: list[Result] = []
         if not together:
             self._runs.append(self._once(first_step(self._model), 0, self._watch(0)))
@@ -202,7 +202,7 @@ class Search:
                 self._stopped = True
                 break
             if together and not ready:
-                # what estimates need of the runs before, while compiled code is at work
+                # strains of earlier runs, for the estimates, while compiled code runs
                 Thread(target=_strains, args=(self._runs[:2],), daemon=True).start()
             run = ready.pop() if ready else self._once(0.5 * self._runs[0].step, k, self._watch(k))
             if self._ends(run, k) or (k == ASKED and self._parts(k)):
@@ -214,14 +214,14 @@ class Search:
     ) -> Result:
         fine = accuracy(self._model) / 1e-3 * 0.25**halved
         miss = 0.0 if self._flexible else MAY_MISS * fine
-        # the finest pass of a search has so many times the steps of the first one; a limit of time is enough
+        # bound on the steps relative to the first pass: that of the finest one; not needed with a time limit
         most = math.inf if self._limited else 2.0 ** (MOST_REFINED if self._flexible else MOST_REFINED_RIGID)
         on = self._system if on is None else on
         return one_pass(of or self._model, on, h, seen, miss, MAY_MAKE * fine, times=most)
 
     def _ends(self, run: Result, k: int, shown: bool = True) -> bool:
-        """Whether the search ends with the run at the first step halved `k` times, which becomes the last
-        one. `shown`: progress is that of a coarser run, too, where one is made."""
+        """True if the search ends with the run at the first step halved `k` times, which becomes the last
+        one. `shown`: a coarser run, where one is made, reports its progress, too."""
         before, model = self._runs[:2], self._model
         if run.ok and before[0].ok:
             h = run.step
@@ -229,12 +229,12 @@ class Search:
         same = abs(run.time[-1] - before[0].time[-1]) <= SAME_END * model.run.duration
         self._runs.insert(0, run)
         if run.ok and before[0].ok:
-            # what nips make of energy is in their law: a finer step makes as much
+            # the energy error of nips is in their law: a finer step has the same
             return within(run)
         return not ended(run) and same and not self._late.over and unbalanced(run) is None
 
     def _two(self) -> Result:
-        """The second pass beside the first one: rigid blocks seldom need a third."""
+        """Runs the second pass in parallel with the first one: rigid blocks seldom need a third."""
         h = first_step(self._model)
         seen, beside = self._watch(0), own(self._system)
         with Beside(lambda stop: self._once(h, 0, seen.beside(stop), beside), seen.leave) as coarse:
@@ -243,9 +243,9 @@ class Search:
             return second
 
     def _three(self) -> tuple[bool, list[Result]]:
-        """The first pass beside the second one. Returns whether the search ends with it, and else the third
-        pass where it was begun beside the second, since the first took long; progress is that of the third
-        then."""
+        """Runs the first pass in parallel with the second one; if the first took long, then the third, too.
+        Returns True if the search ends with the second pass, and the third pass if it was begun. Progress is
+        then that of the third."""
         model, h = self._model, first_step(self._model)
         coarse, second, third = (self._watch(number) for number in (0, 1, 2))
         beside, first, reports = own(self._system), Event(), SimpleQueue[Report | None]()
@@ -258,7 +258,7 @@ class Search:
                 first.set()
             took = self._runs[0].wall_s
             if took < SHORT or not self._allows((TWICE + TWICE * TWICE) * took):
-                return None  # what comes after the run has more use for this processor
+                return None  # the work after the run needs this processor more
             followed = third.beside(stop)._replace(progress=lambda *report: reports.put(report))
             return self._once(0.5 * finer, 2, followed, beside)
 
@@ -266,7 +266,7 @@ class Search:
             for _waiting in range(reports.qsize()):
                 found = reports.get()
                 if found is None:
-                    reports.put(None)  # it has ended, which is waited for
+                    reports.put(None)  # the end marker, for which the other loop waits
                 elif third.progress is not None:
                     third.progress(*found)
 
@@ -281,7 +281,7 @@ class Search:
                 side.raises(Stopped)
             ends = self._ends(run, 1, shown=False)
             if not ends:
-                coarse.leave()  # this processor has no more to do
+                coarse.leave()  # this processor is free
                 _strains(self._runs)
                 for found in iter(reports.get, None):
                     if third.progress is not None:
@@ -292,22 +292,22 @@ class Search:
         return True, []
 
     def _coarser(self, times: int, h: float, halved: int, shown: bool = True) -> Result:
-        """A run at 2 or 4 times the step h, the first one halved so many times, to compare with."""
+        """A run for comparison at 2 or 4 times the step h, which is the first one halved `halved` times."""
         seen = self._watch(watches.DOUBLED if times == 2 else watches.QUADRUPLED)
         return self._once(times * h, halved - times // 2, seen if shown else seen._replace(progress=None))
 
     def _allows(self, seconds: float) -> bool:
-        """Whether so much more wall time is left. All passes count, also those before a run was resumed."""
+        """True if this much more wall time is left. All passes count, also those before a run was resumed."""
         if self._limited:
             return self._late.allows(seconds)
         return sum(run.wall_s for run in self._runs) + seconds <= PATIENCE
 
     def _stops(self) -> bool:
-        """Whether a run at half the step would take too long; without a complete run: `run.limit` is over."""
+        """True if a run at half the step would take too long; without a complete run: `run.limit` is over."""
         runs = self._runs
         if self._limited and not any(run.ok for run in runs):
             return self._late.over
-        # a pass that ended early does not say how long the whole run takes
+        # a pass that ended early does not show how long the whole run takes
         k = next((k for k, run in enumerate(runs) if ended(run)), 0)
         longer = TWICE
         if len(runs) > k + 1 and ended(runs[k]) and ended(runs[k + 1]) and runs[k + 1].wall_s > 0.0:
@@ -319,8 +319,8 @@ class Search:
         return marked(self._runs[0])
 
     def _best(self) -> Result:
-        """The finest run that is complete, where the search ended without one within the tolerance; without
-        any the last one, or the one that came furthest in the time that there was."""
+        """The finest complete run, where the search ended without one within the tolerance. Without any
+        complete one, the last run, or the one that came furthest where time was over."""
         runs, late = self._runs, f"{PATIENCE:g} s of wall time (set run.limit to allow more)"
         late = limit_of(self._model) if self._limited else late
         complete = [k for k, run in enumerate(runs) if run.ok]
@@ -347,8 +347,9 @@ class Search:
         return marked(self._chaos(replace(best, search_ended=why), before, len(runs) - 1 - k))
 
     def _parts(self, k: int) -> bool:
-        """Whether a run from a start that is moved parts from the last run, halved `k` times, by as much as
-        half the step changes: no finer step will do. The last run says so then."""
+        """True if the motion is chaotic, so that no finer step helps: a run from a slightly moved start
+        differs from the last run, halved `k` times, by as much as a run at half the step. Marks the last run
+        then."""
         runs = self._runs[:4]
         name = runs[0].error_estimate_of
         if not all(run.ok for run in runs) or name is None or chaos.falls(runs, name):
@@ -363,12 +364,12 @@ class Search:
         return True
 
     def _moved(self, step: float, halved: int, number: int) -> Result:
-        """A run at this step from a start that is moved."""
+        """A run at this step from a slightly moved start."""
         model = chaos.moved(self._model)
         return self._once(step, halved, self._watch(number), build(model, fold=True), model)
 
     def _chaos(self, best: Result, before: list[Result], halved: int) -> Result:
-        """The result with whether it is chaotic, which a run from a start that is moved a little shows."""
+        """The result with its measure of chaos, from a run with a slightly moved start."""
         name = best.error_estimate_of
         if not before or name is None or chaos.falls([best, *before[:3]], name):
             return best
@@ -379,6 +380,6 @@ class Search:
 
 
 def _strains(runs: list[Result]) -> None:
-    """Works out what estimates need of runs, which keep it."""
+    """Computes the strains of runs, which estimates need; the runs cache them."""
     for run in runs:
         _ = run.strains

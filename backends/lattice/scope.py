@@ -1,4 +1,4 @@
-"""What this solver can represent; said without importing anything that compiles."""
+"""Checks that this solver can represent a Model, without importing compiled code."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ def refuse_passing_yield(model: Model) -> None:
 
 
 def check(model: Model) -> None:
-    """Raises RefusedError by name for what it cannot."""
+    """Raises RefusedError, with the name, for features that this solver cannot represent."""
     refuse_externals(model, "lattice")
     refuse_unsolved(model, "lattice")
     check_balance(model)
@@ -31,7 +31,7 @@ def check(model: Model) -> None:
     refuse_moving(model, "lattice")
     refuse_passing_yield(model)
     if model.run.analysis == "static" and any(roller.speed for roller in model.rollers):
-        # a driven roller rubs on what it touches, and the friction of rest is none
+        # a driven roller slips on the bodies that it touches, and a static run has no friction of motion
         raise RefusedError(
             "lattice: a static analysis with driven rollers is not there yet", ("run", "analysis")
         )

@@ -1,12 +1,12 @@
-"""Which boxes of two sheets are near each other: a search on a grid, made again where boxes have moved.
+"""Neighbour search: lists the near boxes of two sheets on a grid, again whenever boxes have moved.
 
-Sheets that slide over each other meet in ever other boxes, and all pairs of two sheets are many. So the
-tables of a run hold room for pairs behind those of the Model, and what stands there changes: pairs of boxes
-whose centres are closer than their radii and SKIN. While no box has moved by more than half of SKIN since it
-was searched, no other pair can touch.
+Sheets that slide over each other meet in different boxes all the time, and all pairs of two sheets are many.
+So the tables of a run have rows for more pairs behind those of the Model. These hold the pairs of boxes whose
+centres are closer than their radii plus SKIN. While no box has moved by more than half of SKIN since the
+search, no other pair can touch.
 
-Boxes stand in the cells of a grid by their centres, cells in a table by a hash of their numbers; a box meets
-those of 27 cells. What sheets that are far apart cost is a look into cells where nobody is.
+Boxes are sorted into the cells of a grid by their centres, and cells into a table by a hash of their numbers.
+A box is compared with those of 27 cells. Sheets that are far apart cost only the access to empty cells.
 """
 
 from __future__ import annotations
@@ -22,43 +22,43 @@ from mdlgen.model.tables import BOX_BOX, Floats, Ints, Model
 
 REGION = np.dtype(
     [
-        ("row", "i8"),  # of the contacts
-        ("a", "i8"),  # first box of one sheet, and how many
+        ("row", "i8"),  # row of the contacts
+        ("a", "i8"),  # first box of one sheet, and their number
         ("many_a", "i8"),
         ("b", "i8"),
         ("many_b", "i8"),
         ("shared", "i8"),
         ("k", "f8"),
-        ("law", "f8", LAW),  # as of a pair
-        ("mark", "i8"),  # of the first pair among those of all boxes
-        ("sticking", "f8"),  # as of a pair
+        ("law", "f8", LAW),  # as in a pair
+        ("mark", "i8"),  # mark of the first pair among those of all boxes
+        ("sticking", "f8"),  # as in a pair
         ("least", "f8"),  # half length of a box of both sheets, along their faces [mm]
     ]
 )
-# A pair that is searched, in little memory: nearly all that steps read of it.
+# Compact record of a searched pair: nearly all that steps read of it.
 LISTED = np.dtype([("a", "i4"), ("b", "i4"), ("region", "i4")])  # boxes, -1: none from here on; its REGION
 
 
 class Search(NamedTuple):
-    """What a search needs; no regions: there is none."""
+    """Data of the neighbour search; no regions: there is none."""
 
-    regions: np.ndarray  # REGION, one for each contact of two sheets
-    room: Floats  # pairs that each of them has room for
-    listed: np.ndarray  # LISTED, pairs from `first` on
-    first: int  # pairs before are the Model's
-    boxes: Ints  # bodies that are searched
-    place: Floats  # where bodies were at the last search [mm], (bodies, 3)
-    radius: Floats  # of the ball around a box [mm], (bodies,)
-    rough: Floats  # friction of a box's contacts in times that of the contact, (bodies,)
-    size: float  # of a cell [mm]
-    head: Ints  # first box of the cells with a hash, -1: none; a power of two of them
-    following: Ints  # the next one, (bodies,)
-    cell: Ints  # (bodies, 3)
+    regions: np.ndarray  # REGION, one for each contact of two sheets.
+    room: Floats  # capacity of each of them for pairs.
+    listed: np.ndarray  # LISTED, pairs from `first` on.
+    first: int  # number of the Model's pairs, which precede.
+    boxes: Ints  # bodies that are searched.
+    place: Floats  # places of bodies in the last search [mm], (bodies, 3).
+    radius: Floats  # radius of the sphere around a box [mm], (bodies,).
+    rough: Floats  # friction of a box's contacts relative to that of the contact, (bodies,).
+    size: float  # size of a cell [mm].
+    head: Ints  # first box of the cells with a hash, -1: none; the length is a power of two.
+    following: Ints  # next box of the same hash, (bodies,).
+    cell: Ints  # cell of each box, (bodies, 3).
 
 
 def plan(model: Model, pairs: np.ndarray) -> tuple[np.ndarray, Search, int]:
-    """The pairs of a Model with room for those that are searched, the search, and how many different pairs
-    there can be."""
+    """The pairs of a Model with unused rows for those that are searched; the search; the number of all
+    possible pairs."""
 
     rows = np.flatnonzero(model.contacts.kind == BOX_BOX)
     sheets = {s.name: s for s in model.sheets}
@@ -101,8 +101,8 @@ def plan(model: Model, pairs: np.ndarray) -> tuple[np.ndarray, Search, int]:
 
 
 def with_room(pairs: np.ndarray, room: float) -> tuple[np.ndarray, np.ndarray]:
-    """The pairs with room for so many that are searched, and rows of LISTED for these: none yet. What stands
-    behind the first that is EMPTY is not written to, and takes no memory."""
+    """The pairs with unused rows for those that are searched, and as many rows of LISTED. Rows behind the
+    first one that is EMPTY are not written to, so that they take no memory."""
     from mdlgen.backends.lattice.kernels.contact.search import EMPTY
 
     many = math.ceil(room)
@@ -114,5 +114,5 @@ def with_room(pairs: np.ndarray, room: float) -> tuple[np.ndarray, np.ndarray]:
 
 
 def many_searched(search: Search) -> int:
-    """How many pairs the last search found."""
+    """Number of pairs that the last search listed."""
     return int(np.argmax(np.append(search.listed["a"] < 0, True)))

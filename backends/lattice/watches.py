@@ -1,4 +1,4 @@
-"""Who follows the passes of a run, and the numbers by which the states of each pass are kept."""
+"""Observers of the passes of a run, and the numbers under which the states of each pass are stored."""
 
 from __future__ import annotations
 
@@ -7,15 +7,15 @@ from mdlgen.backends.lattice.integrate.passes import Progress, Watch
 from mdlgen.backends.lattice.kernels.tuning import MOST_REFINED_RIGID
 from mdlgen.runs.checkpoint import Checkpointer
 
-# Numbers by which states of passes are kept: first those of the first step, halved so many times, or of the
-# step that is given, doubled so many times; then of twice a step of a search, and of four times that; of a
-# check at a step of its own; of a run at finer steps than were given; of one from a start that is moved, at
-# the last step, and before it.
+# Numbers under which states of passes are stored. The first ones are numbers of halvings of the first step,
+# or of doublings of a given step. Then: twice a step of a search; a check at a step of its own; a run at
+# finer steps than the given one; one from a slightly moved start at the last step, and before it; four times
+# a step.
 DOUBLED, CHECK, FINER, MOVED, MOVED_EARLY, QUADRUPLED = (MOST_REFINED_RIGID + k for k in range(1, 7))
 
 
 class Watches:
-    """Who follows the passes of a run, each by its number; all have until the same time."""
+    """Observers of the passes of a run, one per number; all have the same deadline."""
 
     def __init__(self, progress: Progress | None, keep: Checkpointer | None, sleeps: bool):
         self._keep = keep

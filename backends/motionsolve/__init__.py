@@ -35,7 +35,7 @@ def read(text: str, file: str = "<deck>") -> Reading:
 
 
 def validate(text: str, file: str = "<deck>") -> list[str]:
-    """What is wrong in a deck, one line each; see `mdlgen.backends.motionsolve.reader.schema.validate`."""
+    """Errors of a deck, one line each; see `mdlgen.backends.motionsolve.reader.schema.validate`."""
     from mdlgen.backends.motionsolve.reader import schema
 
     return schema.validate(text, file)

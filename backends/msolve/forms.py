@@ -18,7 +18,7 @@ SEEN, DOC = "SEEN", "DOC"
 
 
 class Keyword(NamedTuple):
-    """What a keyword takes, and how well it is known."""
+    """Kind of value that a keyword takes, and the confidence of that knowledge."""
 
     kind: str
     confidence: str

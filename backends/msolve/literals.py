@@ -19,7 +19,7 @@ def literal(value: Any, indent: int = 0, used: int = 0) -> str:
     else:
         items = [literal(item, indent + 4, 1) for item in value]
         ends = "[]" if isinstance(value, list) else "()"
-    if all(isinstance(item, float) for item in value):  # a long column of numbers goes on in each line
+    if all(isinstance(item, float) for item in value):  # a long column of numbers fills its lines
         items = _filled(items, WIDTH - indent - 6)
     lines = "".join(f"{inner}{item},\n" for item in items)
     return f"{ends[0]}\n{lines}{' ' * indent}{ends[1]}"

@@ -1,1 +1,1 @@
-"""One pass over the time of a run: its arrays, what it stores, how it ends, and passes at the same time."""
+"""One pass over the time of a run: its arrays, stored states and ends, and passes in parallel."""

@@ -1,5 +1,5 @@
-"""The part of a System that is awake: sheets that sleep are parts that do not move there, and sheets
-that have not come yet, or have left, are none.
+"""The part of a System that is awake. Sleeping sheets are fixed parts in it; sheets that have not come yet,
+or have left, are omitted.
 
 As with a scene that is halved (symmetry.mirror), the same kernels run on fewer nodes, joints and pairs.
 Bodies keep their numbers, contacts their rows.
@@ -17,7 +17,7 @@ from mdlgen.model.tables import Ints, Model
 
 
 class Parts:
-    """Which sheets and which moving parts the contacts of a Model, and its pairs, are of."""
+    """Sheets and moving parts of each contact and each pair of a Model."""
 
     def __init__(self, model: Model, system: System):
         number = {sheet.name: k for k, sheet in enumerate(model.sheets)}
@@ -28,17 +28,17 @@ class Parts:
         pairs = system.pairs[: system.search.first]
         self.moves[pairs["row"]] = _moves(model, system)[pairs["b"]]
         count = len(system.bodies)
-        self.sheet_of = np.full(count, -1)  # of each body
+        self.sheet_of = np.full(count, -1)  # sheet of each body
         for k, sheet in enumerate(model.sheets):
             self.sheet_of[sheet.first : sheet.first + sheet.count] = k
 
     def of(self, some: NDArray[np.bool_]) -> NDArray[np.bool_]:
-        """Contacts of some sheets with anything, (contacts,)."""
+        """Contacts of some sheets with any body, (contacts,)."""
         own = some[np.maximum(self.sheets, 0)] & (self.sheets >= 0)
         return own[0] | own[1]
 
     def lasting(self, asleep: NDArray[np.bool_]) -> NDArray[np.bool_]:
-        """Contacts of sheets that sleep with each other and with what does not move, (contacts,)."""
+        """Contacts of sleeping sheets with each other and with fixed parts, (contacts,)."""
         known = self.sheets >= 0
         sleeps = known & asleep[np.where(known, self.sheets, 0)]
         other = ~known[1] & ~self.moves
@@ -46,7 +46,7 @@ class Parts:
 
 
 def _held(held: np.ndarray, pairs: np.ndarray, chosen: Ints) -> np.ndarray:
-    """Those of the pairs in patches that are `chosen`, which are noted in these `pairs`."""
+    """Pairs in patches that are among the `chosen` ones; stores their numbers in `pairs`."""
     if not len(held):
         return held
     place = np.full(int(max(held["pair"].max(), chosen.max(initial=0))) + 1, -1)
@@ -59,7 +59,7 @@ def _held(held: np.ndarray, pairs: np.ndarray, chosen: Ints) -> np.ndarray:
 
 
 def _moves(model: Model, system: System) -> NDArray[np.bool_]:
-    """Bodies that are no boxes of sheets and may move: they slide, swing, turn, or are driven."""
+    """Bodies other than boxes of sheets that may move: they slide, swing, turn, or are driven."""
     bodies = system.bodies
     moves = (bodies["slide"] >= 0) | (bodies["spin"] >= 0) | (bodies["swings"] > 0)
     for roller in model.rollers:
@@ -70,9 +70,8 @@ def _moves(model: Model, system: System) -> NDArray[np.bool_]:
 def awake(
     system: System, parts: Parts, asleep: NDArray[np.bool_], gone: NDArray[np.bool_] | None = None
 ) -> tuple[System, Ints]:
-    """The System with the sheets that are `asleep` (sheets,) as parts that do not move, and without those
-    that are `gone` (sheets,), in arrays of its own, and which of the pairs before those that are searched it
-    has."""
+    """The System, in its own arrays, with the sheets `asleep` (sheets,) as fixed parts and without the sheets
+    `gone` (sheets,). Also returns the numbers of its pairs among the Model's pairs, without searched ones."""
     lasting = parts.lasting(asleep)
     if gone is not None:
         asleep = asleep | gone
@@ -95,7 +94,7 @@ def awake(
     for region in search.regions[regions]:
         for end in "ab":
             met[region[end] : region[end] + region["many_" + end]] = True
-    sleeps = np.append(asleep, False)[parts.sheet_of]  # the last one is of what is no sheet
+    sleeps = np.append(asleep, False)[parts.sheet_of]  # the last one is for bodies without a sheet
     return (
         system._replace(
             bodies=bodies,

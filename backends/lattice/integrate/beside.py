@@ -1,4 +1,4 @@
-"""Passes of a run that go on beside another one: in a thread of their own, on tables of their own."""
+"""Passes of a run that execute in parallel with another one: in their own thread, on their own tables."""
 
 from __future__ import annotations
 
@@ -13,15 +13,15 @@ T = TypeVar("T")
 
 
 class Stopped(Exception):
-    """What such a pass would find is not needed any more."""
+    """Raised in a parallel pass whose result is no longer needed."""
 
 
 class Beside(Generic[T]):
-    """Does `work` while the body of a `with` statement is run. Compiled code of a program holds no lock of
-    Python's, so the two keep two processors busy.
+    """Executes `work` in parallel with the body of a `with` statement. Compiled code of a program does not
+    hold Python's global lock, so the two use two processors.
 
-    `work` is given an event, and raises Stopped soon after that is set, which it is at the end of the body.
-    `then` is called when it has ended.
+    `work` takes an event, and raises Stopped soon after that is set, at the end of the body. `then` is called
+    when it has ended.
     """
 
     def __init__(self, work: Callable[[Event], T], then: Callable[[], None]):
@@ -47,19 +47,19 @@ class Beside(Generic[T]):
         self._thread.join()
 
     def result(self) -> T:
-        """What it found, once it has. Raises what it raised."""
+        """Waits for the result of `work` and returns it. Raises the exception of `work`."""
         self._thread.join()
         if self._failed:
             raise self._failed[0]
         return self._found[0]
 
     def raises(self, but: type[BaseException]) -> None:
-        """Raises what it raised, `but` that, once it has ended."""
+        """Waits for the end of `work` and raises its exception, unless it is of type `but`."""
         self._thread.join()
         if self._failed and not isinstance(self._failed[0], but):
             raise self._failed[0]
 
 
 def own(system: System) -> System:
-    """The same System in arrays of its own: a pass writes into some of them."""
+    """The same System in its own arrays: a pass writes into some of them."""
     return deepcopy(system._replace(mirror=None))._replace(mirror=system.mirror)

@@ -1,4 +1,4 @@
-"""Why a run ended before its end, or is no result."""
+"""Reasons why a run ended early, or is not a valid result."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ from mdlgen.model.tables import Floats, Model
 from mdlgen.results import audit
 from mdlgen.results.result import Result
 
-# How a halved run ends, beside those of kernels.integrate.integrate.
+# Further states in which a pass ends, in addition to those of kernels.integrate.integrate.
 PASSED, OVERLAPPED, LIMITED, CRAWLED, RUNAWAY, TAKEN = -1, -2, -3, -4, -5, -6
 
 
@@ -36,7 +36,7 @@ def reason_of(
     counters: Floats,
     there: NDArray[np.bool_] | None = None,
 ) -> str:
-    """Why a run ended before its end; `there` (sheets,): sheets that were, None: all."""
+    """Reason why a run ended early; `there` (sheets,): sheets that were present, None: all."""
     from mdlgen.backends.lattice.kernels.integrate import integrate
 
     names = model.bodies.name
@@ -94,17 +94,17 @@ def limited(model: Model, t: float) -> str:
 
 
 def limit_of(model: Model) -> str:
-    """How `run.limit` is named."""
+    """`run.limit` with its value, for messages."""
     assert model.run.limit is not None, "asked only where there is one"
     return f"run.limit of {1e-3 * model.run.limit:g} s"
 
 
 def unheld(model: Model, system: System) -> Unheld:
-    """What looks for overlaps that no contact hinders, where one side is solved on that side."""
+    """Detector of overlaps that no contact prevents; in a halved scene, on the side that is solved."""
     return Unheld(model, None if system.mirror is None else ~system.mirror.gone)
 
 
 def unbalanced(run: Result) -> str | None:
-    """Why a run's energies make it no result."""
+    """Reason why the energy balance of a run invalidates it, or None."""
     loss = audit.LOSS if flexible(run.model) else audit.LOSS_RIGID
     return audit.reason(run.model, run.energy, run.step, loss)

@@ -1,4 +1,4 @@
-"""Air between sheets, and between a sheet and a plane: the arrays that a run has of it."""
+"""Arrays of a run for the air between sheets, and between a sheet and a plane."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from mdlgen.model.tables import Model
 
 
 def films(model: Model, system: System) -> Film:
-    """What a run has of it."""
+    """Arrays for the films of a System."""
     found, film_of, blank, widest = film_grids(model)
     cells = len(blank)
     nodes, pairs = (len(system.nodes), len(system.pairs)) if cells else (0, 0)

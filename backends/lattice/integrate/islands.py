@@ -1,4 +1,4 @@
-"""The parts of a Model, which form islands as they touch, and the least speed that each is measured by."""
+"""The parts of a Model, which form islands as they touch, and the least speed that scales errors of each."""
 
 from __future__ import annotations
 
@@ -16,8 +16,8 @@ from mdlgen.model.tables import Ints, Model
 def islands(model: Model, system: System) -> Islands:
     """Parts of a Model before the first step.
 
-    The least speed of a part is the one that takes it over LEAST_WAY of its size in the time of the run: an
-    error of that speed times `run.tolerance` stays within the tolerance.
+    The least speed of a part moves it by LEAST_WAY of its size in the time of the run. A velocity error of
+    that speed times `run.tolerance` keeps its place within the tolerance.
     """
     sheets, moving, bodies = len(model.sheets), system.moving, system.bodies
     parts = sheets + len(moving)
@@ -34,7 +34,7 @@ def islands(model: Model, system: System) -> Islands:
         body = bodies[b]
         radius = float(body["size"][RADIUS])
         size[k] = radius if radius > 0.0 else 2.0 * float(body["half"][2])
-        if body["coupled"] == FOLLOWER:  # all of a shaft are one part
+        if body["coupled"] == FOLLOWER:  # all rollers of a shaft are one part
             part[b] = of_border[body["spin"]]
         elif body["spin"] >= 0:
             of_border[body["spin"]], answers[k] = k, True
@@ -67,13 +67,13 @@ def islands(model: Model, system: System) -> Islands:
 
 
 def groups(work: Workspace) -> int:
-    """How many groups of parts there are, each with an energy balance of its own."""
+    """Number of groups of parts, each of which has its own energy balance."""
     return 1 + int(work.islands.group.max(initial=0))
 
 
 def _ends(model: Model, part: Ints, answers: np.ndarray) -> Ints:
-    """The parts of each contact that answer forces, (2, contacts); -1: one does not. The first is one that
-    does where there is one."""
+    """Parts of each contact that forces move, (2, contacts); -1: they do not. If there is only one, it is the
+    first."""
     named = {sheet.name: k for k, sheet in enumerate(model.sheets)}
     named |= {p.name: int(part[p.body]) for p in model.machine}
     found = np.full((2, len(model.contacts)), -1, np.int64)
@@ -85,8 +85,8 @@ def _ends(model: Model, part: Ints, answers: np.ndarray) -> Ints:
 
 
 def _groups(ends: Ints, answers: np.ndarray) -> Ints:
-    """Of each part the number of its group, which contacts join, with pairs in reach or not; 0 of what
-    answers nothing."""
+    """Number of the group of each part. Contacts join parts to groups, also without near pairs; 0 for parts
+    that forces do not move."""
     one, two = ends[:, (ends >= 0).all(axis=0)]
     first = np.arange(len(answers))
     while True:

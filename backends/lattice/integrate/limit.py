@@ -1,4 +1,4 @@
-"""The bound of wall time of a run, `run.limit`: no pass goes on long after it."""
+"""The bound of wall time of a run, `run.limit`: each pass ends soon after it."""
 
 from __future__ import annotations
 
@@ -14,13 +14,13 @@ from mdlgen.model.tables import Model
 
 
 class Deadline(NamedTuple):
-    """When the wall time of a run is over, as `time.perf_counter` has it [s]; inf: it has no limit."""
+    """Time at which the wall time of a run is over, on the clock `time.perf_counter` [s]; inf: no limit."""
 
     at: float = math.inf
 
     @classmethod
     def of(cls, model: Model) -> Deadline:
-        """From now on."""
+        """Deadline of a run that begins now."""
         limit = model.run.limit
         return cls() if limit is None else cls(clock.perf_counter() + 1e-3 * limit)
 
@@ -29,16 +29,16 @@ class Deadline(NamedTuple):
         return clock.perf_counter() >= self.at
 
     def allows(self, seconds: float) -> bool:
-        """Whether what takes so long would end in time."""
+        """True if work of this duration would end in time."""
         return clock.perf_counter() + seconds <= self.at
 
 
 class Cut:
-    """Ends a call of compiled code soon after a deadline, within one step as it is divided.
+    """Ends a call of compiled code soon after a deadline, within one step with its halvings.
 
-    Compiled code asks nothing; but after each step that it takes it ends where a body is out of its bounds.
-    So bounds that hold nothing are written over those of the arrays that a pass works on, `work()`, in a
-    thread of its own; they are in arrays of their own, see `work.workspace`.
+    Compiled code cannot be interrupted; but after each step it ends where a body is out of its bounds. So a
+    separate thread overwrites the bounds of the workspace of a pass, `work()`, by empty ones. They are in
+    arrays of their own, see `work.workspace`.
     """
 
     def __init__(self, deadline: Deadline, work: Callable[[], Workspace]):
@@ -65,13 +65,13 @@ class Cut:
 
 
 class Calls:
-    """How many steps compiled code takes in one call, so that it takes about as long as CALL."""
+    """Number of steps of one call of compiled code, such that it takes about as long as CALL."""
 
     def __init__(self, most: int):
         self.most = self.many = most
 
     def took(self, many: int, seconds: float) -> None:
-        """A call that took so many steps took so long."""
+        """Updates the number from a call with this number of steps and this duration."""
         if seconds > 2.0 * CALL:
             self.many = max(1, int(many * CALL / seconds))
         elif seconds < 0.5 * CALL:

@@ -1,4 +1,4 @@
-"""All that a pass of a run carries from one stored time to the next, as arrays that can be kept."""
+"""The state that a pass of a run carries from one stored time to the next, as arrays for a checkpoint."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ from mdlgen.runs.checkpoint import Checkpointer, State
 
 
 class Stage(NamedTuple):
-    """Where a pass is: its status and time [ms], outputs that are stored, wall time so far [s]."""
+    """Progress of a pass: its status and time [ms], number of stored outputs, wall time so far [s]."""
 
     status: int
     t: float
@@ -27,7 +27,8 @@ class Stage(NamedTuple):
 
 
 REACTING = "reacting"  # sensors and rules, in a checkpoint
-# What a step works out before it reads it. There is room for far more pairs than there are: more than memory.
+# Arrays that a step computes before it reads them. Their capacity for pairs far exceeds the pairs in use, and
+# may exceed the memory.
 SCRATCH = {
     *(f"mid.{name}" for name in ("results", "touched", "rows", "faces", "near", "spare")),
     *("mid.does", "mid.lies"),
@@ -43,8 +44,8 @@ SCRATCH = {
 
 
 class PassState:
-    """Writes and reads a pass: the state, what it counts and is steered by, and what a step takes over from
-    the one before, which a pass that has ended does not need."""
+    """Writes and reads a pass: the state, its counters and control, and the values that a step takes over
+    from the one before, which a pass that has ended does not need."""
 
     def __init__(
         self,
@@ -66,7 +67,7 @@ class PassState:
         self._work = {name: array for name, array in every.items() if name not in SCRATCH}
 
     def _rows(self) -> dict[str, int]:
-        """How many rows are in use of arrays that have room."""
+        """Number of rows in use, for arrays with unused rows."""
         searched, work = many_searched(self._search), self._work
         coupled = int(work["matrix.couplings.many"][0])
         couplings = dict.fromkeys(("ends", "blocks", "single"), coupled) | {"colouring.own": 2 * coupled}
@@ -79,7 +80,7 @@ class PassState:
         }
 
     def arrays(self, stage: Stage) -> State:
-        """The pass as it is now."""
+        """Arrays of the present state of the pass."""
         stored = {f"stored.{name}": array for name, array in self._recorder.arrays().items()}
         rows = self._rows()
         work = {name: array[: rows.get(name)] for name, array in self._work.items() if not stage.ended}
@@ -93,7 +94,7 @@ class PassState:
         }
 
     def back(self, keep: Checkpointer, number: int) -> Stage | None:
-        """Takes the pass back to where it was kept; None where it was not. Raises OutputError."""
+        """Restores the pass from its checkpoint; None where there is none. Raises OutputError."""
         stored = {name: array[:0] for name, array in self._recorder.arrays().items()}
         fixed = {name: self._recorder.kept[k] for k, name in enumerate(("rows", "marks"))}
         like = {f"stored.{name}": array for name, array in (stored | fixed).items()}

@@ -67,14 +67,14 @@ from mdlgen.results.result import Result
 from mdlgen.runs.checkpoint import Checkpointer
 
 Progress = Callable[[float, float, int, int], None]
-# Of Result.counts.
+# Names of Result.counts.
 COUNTED = {"factors": FACTORS, "solves": SOLVES, "given_up": GIVEN_UP}
 
 
 class Watch(NamedTuple):
-    """Who follows a pass: what is called as it goes, what keeps it and by which number, and what stops it
-    where it goes on at the same time as another one; one of the two is hidden. And whether sheets at rest
-    may sleep, and when the time of the run is over."""
+    """Observers of a pass: the callback for its progress; its checkpointer and number; for a parallel pass,
+    the event that stops it, and whether it is `hidden`, as one of two is. `sleeps`: sheets at rest may
+    sleep."""
 
     progress: Progress | None = None
     keep: Checkpointer | None = None
@@ -85,11 +85,11 @@ class Watch(NamedTuple):
     deadline: Deadline = Deadline()
 
     def beside(self, stop: Event) -> Watch:
-        """Of a pass that goes on beside another one, which is the one that reports."""
+        """The Watch of a pass in parallel with another one, which is the one that reports."""
         return self._replace(progress=None, stop=stop, hidden=True)
 
     def leave(self) -> None:
-        """Such a pass has ended, and leaves a processor free."""
+        """Reports that a parallel pass has ended, so that a processor is free."""
         if self.keep is not None:
             self.keep.free.set()
 
@@ -98,7 +98,7 @@ UNSEEN = Watch()
 
 
 class Division(NamedTuple):
-    """How a run is divided: stored times after the start, steps between two of them, and the step [ms]."""
+    """Division of a run: number of stored times after the start, of steps between two of them, step [ms]."""
 
     outputs: int
     each: int
@@ -106,8 +106,8 @@ class Division(NamedTuple):
 
 
 def division(model: Model, wanted: float) -> Division:
-    """Into steps of at most `wanted` [ms] that outputs fall on, or longer ones where outputs are left out.
-    Raises SpecError for too many."""
+    """Divides a run into steps of at most `wanted` [ms] that end at the outputs. Where `wanted` is longer
+    than the time between outputs, some are omitted. Raises SpecError for too many steps."""
     run = model.run
     outputs = max(1, round(run.duration / run.print_step))
     each = max(1, math.ceil(run.duration / outputs / wanted - 1e-9))
@@ -131,13 +131,14 @@ def first_step(model: Model) -> float:
 
 
 def accuracy(model: Model) -> float:
-    """What a step is solved to: a larger tolerance is for what differs from run to run however exact."""
+    """Tolerance to which a step is solved. A larger `run.tolerance` is for motions that differ from run to
+    run at any accuracy, so the step does not follow it."""
     return min(model.run.tolerance, LOOSEST)
 
 
 def speed(model: Model) -> float:
-    """What velocities are measured by at first [mm/ms]: drives, initial velocities and spins; a hundredth of
-    a sheet in the run, and a tenth where nothing else is known."""
+    """Initial scale of velocities [mm/ms]: that of drives, initial velocities and spins; at least a hundredth
+    of a sheet's length in the run, and a tenth where nothing else is known."""
     drives = [abs(r.speed) * r.radius for r in model.rollers if r.speed is not None]
     starts = [float(np.linalg.norm(s.velocity)) for s in model.sheets]
     own = [max(s.size) / 10 / model.run.duration for s in model.sheets]
@@ -159,9 +160,9 @@ def one_pass(
     anew: bool = False,
     times: float = math.inf,
 ) -> Result:
-    """One run at a step, or the next smaller one that outputs fall on; `miss`, `made`: see MAY_MISS and
-    MAY_MAKE, 0 for any; `anew`: a new factor for each step; `times`: it ends early where it takes more than
-    so many times its number of steps, since they are divided. Raises Stopped where `watch` says so."""
+    """One run at a step, or at the next smaller one that divides the time between outputs. `miss`, `made`:
+    see MAY_MISS and MAY_MAKE, 0 for any; `anew`: a new factor for each step; `times`: it ends early where
+    halvings make more than this multiple of its number of steps. Raises Stopped where `watch` stops it."""
     going = _Pass(model, system, division(model, wanted), watch, times)
     going.steer(miss, made, anew)
     going.take_up()
@@ -170,14 +171,14 @@ def one_pass(
 
 
 class _Pass:
-    """A pass under way."""
+    """State of a pass during its run."""
 
     def __init__(self, model: Model, system: System, divided: Division, watch: Watch, times: float):
-        if model.reactions.rules:  # they rewrite records of bodies, which the next pass begins with
+        if model.reactions.rules:  # they rewrite records of bodies, which the next pass needs unchanged
             system = system._replace(bodies=system.bodies.copy())
         self._model, self._system, self._divided, self._watch = model, system, divided, watch
         self._begun = clock.perf_counter()
-        self._most = times * divided.outputs * divided.each  # steps
+        self._most = times * divided.outputs * divided.each  # bound on the number of steps
         self._looks = Looks(model.run.duration, divided.outputs, divided.each)
         there = beginning(model, system)
         work = arrays(model, system, there[0])
@@ -188,7 +189,7 @@ class _Pass:
         self._sleep = Sleep(model, system, work, steering, self._recorder, watch.sleeps, there)
         self.passing = Passing(model, self._sleep, self._recorder, divided.step, self._overlaps)
         self._recorder.store(0.0)
-        # the guess of a step is the better the finer it is: what is left of it must fall as fast
+        # the guess is more accurate at finer steps, so the limit of the iterations must fall as fast
         part = ROUND_OFF if flexible(model) else ROUND_OFF_RIGID
         self._tolerance = part * min(1.0, (divided.step / FIRST_STEP) ** 2) * accuracy(model)
         self._status, self._t, self._past = integrate.DONE, 0.0, 0.0
@@ -204,7 +205,7 @@ class _Pass:
         self._pace[FASTEST] = speed(self._model)
 
     def take_up(self) -> None:
-        """Goes on from the state that was kept of this pass, if there is one."""
+        """Resumes this pass from its checkpoint, if there is one."""
         keep, number, sleep = self._watch.keep, self._watch.number, self._sleep
         if keep is None or not sleep.lie_down(keep, number):
             return
@@ -218,7 +219,7 @@ class _Pass:
         self._show()
 
     def go(self) -> None:
-        """Takes all steps that are left, or as many as can be."""
+        """Takes all remaining steps, or as many as possible."""
         keep, deadline = self._watch.keep, self._watch.deadline
         if self._reacting is not None and self._t == 0.0 and self._status == integrate.DONE:
             self._status = self._reacting.look(0.0, self._divided.step)
@@ -243,10 +244,10 @@ class _Pass:
                     break
         within = (integrate.LEFT, integrate.DEEP, integrate.STRETCHED, LIMITED, CRAWLED)
         if self._todo and self._status in within and self._t > self._recorder.last:
-            self._recorder.store(self._t)  # with which its energies balance, or do not
+            self._recorder.store(self._t)  # for the energy balance up to this time
 
     def _up_to(self, output: int) -> int:
-        """Takes the steps to the end of an output, and stores it; the status."""
+        """Takes the steps to the end of an output, and stores it; returns the status."""
         looks, duration = self._looks, self._model.run.duration
         begins, stops = output * self._divided.each, looks.stops(output)
         for goal, before in zip(stops, [begins, *stops], strict=False):
@@ -267,7 +268,7 @@ class _Pass:
         return integrate.DONE
 
     def _advance(self, t: float, goal: int, steps: int, fresh: bool) -> tuple[int, float]:
-        """Takes so many steps up to that one; `fresh`: the first one follows a state that was stored."""
+        """Takes `steps` steps from t up to step `goal`; `fresh`: the first one follows a stored state."""
         sleep, stop, dt = self._sleep, self._watch.stop, self._divided.step
         left = np.full(steps, dt)
         while left.size:
@@ -308,19 +309,19 @@ class _Pass:
         return integrate.DONE, t
 
     def _shorten(self) -> None:
-        """A rule ended the run at the time that was stored last."""
+        """Shortens the run to the last stored time, where a rule ended it."""
         self._model = replace(self._model, run=replace(self._model.run, duration=self._recorder.last))
         self._recorder.model = replace(self._recorder.model, run=self._model.run)
 
     def _show(self) -> None:
-        """Offers what there is so far; of two passes at the same time the one that is not hidden does."""
+        """Offers the partial result; of two parallel passes, only the one that is not hidden."""
         keep = self._watch.keep
         if keep is not None and not self._watch.hidden:
             snapshot, steps = self._recorder.snapshot(self._energies), int(self._counters[STEPS])
             keep.part = partial(_part, self._recorder, snapshot, self._divided.step, steps)
 
     def _keep(self, keep: Checkpointer, outputs: int, ended: bool) -> None:
-        """Keeps the state, to go on from."""
+        """Stores a checkpoint."""
         at = Stage(self._status, self._t, outputs, self._wall(), ended)
         keep.save(self._watch.number, self._state().arrays(at))
 
@@ -332,7 +333,7 @@ class _Pass:
         return self._past + clock.perf_counter() - self._begun
 
     def result(self) -> Result:
-        """What the pass found, or why it ended early."""
+        """The Result of the pass, or the reason why it ended early."""
         keep, number, status = self._watch.keep, self._watch.number, self._status
         wall = self._wall()
         if keep is not None and self._todo and (keep.written or keep.due(number)):
@@ -369,8 +370,8 @@ class _Pass:
 
 
 def _seen(sleep: Sleep, system: System, overlaps: Unheld, t: float, there: NDArray[np.bool_] | None) -> int:
-    """integrate.DONE, or why a pass cannot go on from its state at the time t; `there` (sheets,): sheets that
-    are, None: all."""
+    """integrate.DONE, or the status of a pass that cannot continue from its state at the time t; `there`
+    (sheets,): sheets that are present, None: all."""
     state, mirror = sleep.work.state, sleep.system.mirror
     passed = mirror.passed(state.x, system.nodes) if mirror is not None else -1
     if passed >= 0:
@@ -380,7 +381,7 @@ def _seen(sleep: Sleep, system: System, overlaps: Unheld, t: float, there: NDArr
 
 
 def _part(recorder: Recorder, snapshot: Snapshot, dt: float, steps: int) -> Result:
-    """The result up to where a run stood."""
+    """The Result up to a snapshot."""
     result = recorder.result_at(snapshot, "lattice", None)
     result.step, result.steps = dt, steps
     return result

@@ -1,8 +1,8 @@
 """Sheets that come in and leave during a pass.
 
-A step ends where a sheet comes in, so that it does so at its time with its given state. Where one leaves is
-found by Newton's method over steps: a step ends where the sheet would be beyond its plane at the velocity
-that it has, until it is near enough. A sheet that is to leave at rest does so as it falls asleep.
+A step ends when a sheet comes in, so that it has its given state at its given time. The time at which one
+leaves is found by Newton's method over steps: a step ends where the sheet would reach its plane at its
+present velocity, until it is near enough. A sheet that leaves at rest does so when it falls asleep.
 """
 
 from __future__ import annotations
@@ -21,7 +21,7 @@ from mdlgen.model.tables import Floats, Model
 
 
 class Passing:
-    """Which sheets of a pass are there."""
+    """Sheets that are present during a pass."""
 
     def __init__(self, model: Model, sleep: Sleep, recorder: Recorder, dt: float, overlaps: Unheld):
         """`dt`: the step [ms]."""
@@ -35,30 +35,30 @@ class Passing:
 
     @property
     def there(self) -> NDArray[np.bool_] | None:
-        """Which sheets are there, (sheets,); None: all."""
+        """True for sheets that are present, (sheets,); None: all are."""
         return ~self._sleep.gone if self.active else None
 
     def enter(self, sheet: int, t: float) -> None:
-        """A sheet that has not come yet comes in at a time [ms], not before the one that the pass is at."""
+        """Lets a sheet that has not come yet come in at a time [ms], not before the present one."""
         if math.isnan(self.stays[sheet, 0]):
             self.enters[sheet] = t
 
     def enter_next(self, sheets: Iterable[int], t: float) -> None:
-        """The first of these that has not come yet, nor is about to, comes in at a time [ms]."""
+        """Lets the first of these sheets that has no time yet come in at a time [ms]."""
         for sheet in sheets:
             if math.isnan(self.stays[sheet, 0]) and math.isinf(self.enters[sheet]):
                 self.enter(sheet, t)
                 return
 
     def exact(self, t: float) -> float:
-        """The time of a sheet that comes in at t, but for round-off; else t."""
+        """The exact time of a sheet that comes in at t within round-off; else t."""
         near = self.enters[np.abs(self.enters - t) <= self._slack]
         return float(near[0]) if self.active and near.size else t
 
     def cut(self, t: float, steps: Floats) -> tuple[Floats, bool]:
-        """The steps from t on, or those of them up to where the next sheet comes in or leaves; and whether
-        all of these are whole. Half of the way to where one leaves is gone first, until that is in the next
-        step: its velocity may change."""
+        """The steps from t on, cut off where the next sheet comes in or leaves; and True if all of these are
+        whole. Since the velocity may change, steps cover half of the time until a sheet leaves, repeatedly,
+        until that is in the next step."""
         if not self.active:
             return steps, True
         ends, leaves = np.cumsum(steps), self._leaves()
@@ -72,12 +72,12 @@ class Passing:
         return (np.append(steps[:whole], rest), False) if rest > self._slack else (steps[:whole], True)
 
     def _comes(self) -> float:
-        """When the next sheet comes in [ms]."""
+        """Time at which the next sheet comes in [ms]."""
         late = self.enters[self._sleep.gone & np.isnan(self.stays[:, 0])]
         return float(late.min(initial=math.inf))
 
     def _leaves(self) -> float:
-        """After what time the next sheet would leave at the velocity that it has [ms]."""
+        """Time until the next sheet would leave at its present velocity [ms]."""
         found = math.inf
         for k in np.flatnonzero(~self._sleep.gone).tolist():
             sheet = self._model.sheets[k]
@@ -94,12 +94,12 @@ class Passing:
         return found
 
     def _far(self, k: int) -> Floats:
-        """See model.passing.far, of a sheet by its number."""
+        """model.passing.far for a sheet by its number."""
         state = self._sleep.work.state
         return far(self._model, self._model.sheets[k], state.x, state.r, self._overlaps.solved)
 
     def turn(self, t: float) -> bool:
-        """Lets sheets leave and come in that do so at t; False: one cannot, see `taken`."""
+        """Lets sheets leave and come in whose time is t; False: one cannot, see `taken`."""
         if not self.active:
             return True
         sleep, leaves = self._sleep, self._leaving()
@@ -126,6 +126,6 @@ class Passing:
         return leaves
 
     def taken(self, t: float) -> str | None:
-        """Why a sheet cannot come in at t: another one is where it comes in; None: none is."""
+        """Reason why a sheet cannot come in at t: another one is in its place; None: it can."""
         state = self._sleep.work.state
         return self._overlaps.taken(self._coming(t), ~self._sleep.gone, state.x, state.r, t)

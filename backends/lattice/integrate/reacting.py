@@ -1,5 +1,5 @@
-"""A pass whose machine reacts: its steps end where its sensors and rules ask for it, and orders are carried
-out there."""
+"""A pass whose machine reacts: its steps end at events of its sensors and rules, where orders are
+executed."""
 
 from __future__ import annotations
 
@@ -28,12 +28,12 @@ class Reacting:
         self._boxes = np.zeros(len(sleep.work.tables.bodies), bool)
         for sheet in model.sheets:
             self._boxes[sheet.first : sheet.first + sheet.count] = True
-        self.runaway = ""  # why a pass ended
+        self.runaway = ""  # reason why a pass ended
         sleep.ordered = self._commands.write
         self._ordered: np.ndarray | None = None  # the records that have all orders
 
     def steps(self, t: float, left: Floats, step: float) -> Floats:
-        """Of the steps that are `left` [ms] from the time t on those to take before the machine looks again:
+        """The steps, of those that are `left` [ms] from the time t on, up to the next check of the machine:
         whole ones, or a part of the first; `step`: a whole one."""
         self._write()
         self.machine.there = self._passing.there
@@ -42,7 +42,8 @@ class Reacting:
         return left[:whole] if whole else np.array([until])
 
     def look(self, t: float, step: float) -> int:
-        """Sees what happens at the time t, and carries out what follows: integrate.DONE, or RUNAWAY."""
+        """Evaluates sensors and rules at the time t, and executes their orders: integrate.DONE, or
+        RUNAWAY."""
         self.machine.there = self._passing.there
         try:
             orders = self.machine.look(t, step, self._poses())
@@ -62,7 +63,8 @@ class Reacting:
         return DONE
 
     def _book(self, body: int, grown: float) -> None:
-        """The work of what changes the force of a spring: its potential energy changes at once."""
+        """Adds the work of an order that changes the force of a spring by `grown` [N]: its potential energy
+        jumps."""
         work = self._sleep.work
         gained = -grown * float(work.state.s[work.tables.bodies["slide"][body]])
         energies = self._sleep.steering.energies[work.islands.group[work.islands.part[body]]]
@@ -70,31 +72,31 @@ class Reacting:
         energies[THROUGH_DRIVES] += abs(gained)
 
     def _write(self) -> None:
-        """Sheets that fall asleep or wake, and pairs of a wider margin, come with records of their own."""
+        """Writes all orders into new records of bodies, after sheets slept or woke, or the margin widened."""
         bodies = self._sleep.work.tables.bodies
         if bodies is not self._ordered:
             self._commands.write(bodies)
             self._ordered = bodies
 
     def _poses(self) -> Poses:
-        """Of all bodies, with the velocities in the middle of the last step."""
+        """Poses of all bodies, with the velocities in the middle of the last step."""
         work = self._sleep.work
         state, motion, nodes = work.state, work.mid.motion, self._sleep.system.nodes
         u, w = motion.u.copy(), motion.w.copy()
-        u[self._boxes] = w[self._boxes] = 0.0  # but for what is awake
+        u[self._boxes] = w[self._boxes] = 0.0  # those that are awake follow
         u[nodes], w[nodes] = state.u[:, :3], state.u[:, 3:]
         return Poses(state.x, state.r, u, w)
 
     # -- checkpoints
 
     def carried(self) -> np.ndarray:
-        """All that it goes on from, as bytes."""
+        """The state of the machine for a checkpoint, as bytes."""
         state = {"machine": self.machine.kept(), "commands": self._commands.kept()}
         text = json.dumps({**state, "enters": self._passing.enters.tolist()})
         return np.frombuffer(text.encode("ascii"), dtype=np.uint8)
 
     def restore(self, kept: np.ndarray) -> None:
-        """Goes back to what `carried` gave."""
+        """Restores the state that `carried` returned."""
         found = json.loads(kept.tobytes())
         self.machine.restore(found["machine"])
         self._commands.restore(found["commands"])

@@ -1,4 +1,4 @@
-"""What a run passes through: stored states, contact statistics, the energy balance."""
+"""Recorder of a run: stored states, contact statistics, the energy balance."""
 
 from __future__ import annotations
 
@@ -47,11 +47,11 @@ BEGUN = [FORCE_BEGUN, *range(TURNING_BEGUN, TURNING_BEGUN + TURNING)]
 
 
 class Snapshot(NamedTuple):
-    """How far a recorder is: what a result up to there is made from, besides the stored states."""
+    """Data for a partial result, in addition to the stored states."""
 
     model: Model
     system: System
-    times: int  # how many are stored
+    times: int  # number of stored times
     rows: np.ndarray
     marks: np.ndarray
     work: np.ndarray
@@ -62,7 +62,7 @@ class Snapshot(NamedTuple):
 
 
 class Recorder:
-    """Stores states of a run; `kept` is what the compiled code adds up."""
+    """Stores states of a run; `kept`: the sums of the compiled code."""
 
     def __init__(self, model: Model, system: System, work: Workspace, outputs: int = 0):
         self.model, self.system, self.kept, self.work = model, system, work.kept, work
@@ -81,12 +81,12 @@ class Recorder:
         self.stays: np.ndarray | None = None
 
     def follow(self, work: Workspace, asleep: np.ndarray) -> None:
-        """From now on steps work on these arrays, of what is awake of the System; `asleep` (groups, 3):
-        energies of what is not."""
+        """Uses these arrays, of the awake part of the System, from now on; `asleep` (groups, 3): energies of
+        the other part."""
         self.work, self._asleep = work, asleep
 
     def widen(self, model: Model, system: System, kept: Kept) -> None:
-        """From now on the pairs are those of this Model, of which `system` is the whole that is solved."""
+        """Uses the pairs of this Model from now on; `system`: the whole System that is solved."""
         self.model, self.system, self.kept = model, system, kept
 
     def store(self, t: float) -> None:
@@ -107,10 +107,10 @@ class Recorder:
         self._states.add(Motion(state.x, state.r, motion.u, motion.w))
         if t == 0.0:
             self.kept.rows[:, NOW] = rows[:, NOW]
-            # what presses as a run begins may be gone in the middle of its first step
+            # a contact at the start may have opened in the middle of the first step
             self.kept.rows[:, [MAX_FORCE, MAX_DEPTH]] = rows[:, [FORCE_NOW, DEPTH_NOW]]
-        # forces in the middle of the last step, where the rule has them, until the next one shows what they
-        # are at its end; at the start as it begins
+        # forces of the middle of the last step, where the rule evaluates them, until the next step allows to
+        # interpolate those at its end; at the start, those of the start
         self._forces.append(self.kept.rows[:, NOW])
         if len(self.model.plastic):
             self._plastic.append(plastic_rows(self.system.yields))
@@ -119,15 +119,16 @@ class Recorder:
 
     @property
     def last(self) -> float:
-        """The time that was stored last [ms]."""
+        """Last stored time [ms]."""
         return self._times[-1]
 
     def between(self) -> None:
-        """The step after the last state that is stored has been taken: forces there lie between both."""
+        """Replaces the forces at the last stored state, after the next step, by those interpolated from
+        both."""
         self._forces[-1] = self.kept.rows[:, BEGUN]
 
     def arrays(self) -> dict[str, np.ndarray]:
-        """All that it has stored, and what the compiled code added up."""
+        """All stored arrays, and the sums of the compiled code."""
         return {
             **self._states.all(),
             **({"p": self._rotations(len(self._times))} if len(self.model.plastic) else {}),
@@ -141,7 +142,7 @@ class Recorder:
         }
 
     def restore(self, arrays: dict[str, np.ndarray]) -> None:
-        """Goes back to what `arrays` gave."""
+        """Restores the state that `arrays` returned."""
         self._states.restore({name: arrays[name] for name in WIDTHS})
         self._forces = list(arrays["f"])
         self._plastic = list(arrays.get("p", ()))
@@ -154,15 +155,15 @@ class Recorder:
             self.booked[:], self.stays[:] = arrays["booked"], arrays["stays"]
 
     def _rotations(self, times: int) -> np.ndarray:
-        """Plastic rotations at the first so many times, and the energy that they took, (times, rows + 1)."""
+        """Plastic rotations at the first `times` times, and the energy that they took, (times, rows + 1)."""
         return np.array(self._plastic[:times]).reshape(times, len(self.model.plastic) + 1)
 
     def _lags(self, times: int) -> np.ndarray:
-        """By what angles rollers are behind their shafts at the first so many times, (times, axles)."""
+        """Angles by which rollers lag behind their shafts at the first `times` times, (times, axles)."""
         return np.array(self._behind[:times]).reshape(times, len(self._axles))
 
     def snapshot(self, work: np.ndarray) -> Snapshot:
-        """How far it is now; it stays as it is while the run goes on."""
+        """Snapshot of the present state; it does not change as the run continues."""
         rows, marks = self.kept
         first, last = self._energies.copy()
         energies = (first, last, self._most.copy())
@@ -183,7 +184,7 @@ class Recorder:
         return self._result(self.snapshot(work), solver, reason, self._states.all())
 
     def result_at(self, snapshot: Snapshot, solver: str, reason: str | None) -> Result:
-        """The Result up to the snapshot, in arrays of its own."""
+        """The Result up to the snapshot, in its own arrays."""
         return self._result(snapshot, solver, reason, self._states.first(snapshot.times))
 
     def _result(
@@ -235,7 +236,7 @@ class Recorder:
 
 
 def _balance(snapshot: Snapshot, work: Workspace) -> Energy:
-    """Energies of all, with the balance of the group in which most is missing or too much."""
+    """Energies of the whole scene, with the balance of the group that has the largest error."""
     model, (first, last, most) = snapshot.model, snapshot.energies
     lost, driven, through, numerical = snapshot.work.sum(axis=0).tolist()
     kinetic, elastic, _ = last.sum(axis=0).tolist()

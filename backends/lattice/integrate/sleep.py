@@ -1,26 +1,25 @@
-"""Sheets that sleep: what rests for long is left out of a run until something moves it.
+"""Sleeping sheets: islands at rest are omitted from a run until something moves them.
 
-A sheet that lies still costs as much as one that moves: its bushings, contacts and velocities are worked out
-in each step, to no effect. So an island, sheets that touch each other, sleeps where no place of them has been
-faster for a while than what iterations may leave in what rests (kernels.integrate.islands: STILL). What is
-left of the System takes them for parts that do not move (see awake); forces of contacts among them go on as
-they are, and so do their energies.
+A sheet at rest costs as much as one that moves: each step evaluates its bushings, contacts and velocities. So
+an island of sheets that touch each other sleeps after a time in which none of its places was faster than the
+residual speed of iterations at rest (kernels.integrate.islands: STILL). The rest of the System treats these
+sheets as fixed parts (see awake). The contact forces among them, and their energies, are held.
 
-What moves may reach them: its contacts with them are worked out as before, and their forces are impulses
-that the boxes miss. Before these would move a box, alone, by that speed, all that sleep and touch its sheet
-wake, at the velocities that they had, and the step is taken again with them.
+Moving bodies may reach them. Such contacts are evaluated as before, and their forces are impulses that the
+sleeping boxes miss. Before these would give a box, alone, that speed, all sleeping sheets that touch its
+sheet wake at the velocities that they had, and the step is repeated with them.
 
-How long a while is: a sheet that is slower than V for a time W about a turn in its motion is accelerated by
-2 V/W at most, and moves by V T^2/W in a run of T without sleep. With W = T/20 that is 20 V T: V being the
-part STILL of the speed that iterations may leave, a tenth of the run's tolerance times the way of what is
-fastest. A sheet that woke waits twice as long.
+The waiting time: a sheet that is slower than V for a time W, about a reversal of its motion, is accelerated
+by 2 V/W at most, and moves by V T^2/W in a run of T without sleep. With W = T/20 that is 20 V T. V is the
+part STILL of the speed that iterations may leave. So the motion is a tenth of the run's tolerance times the
+path of the fastest body. A sheet that woke waits twice as long.
 
-Sheets that have not come yet, or have left, are `gone`: nothing meets them, and their energies are booked as
+Sheets that have not come yet, or have left, are `gone`: nothing meets them, and their energies are added as
 they come and leave (see passing).
 
-Sheets with air on them do not sleep, since a film closes slowly. Nor does an island of which a sheet hangs on
-something, or touches a part that moves, nor any sheet of a scene where sheets stick on other parts, or where
-loads or gravity change over time.
+Some sheets do not sleep: those with air on them, since a film closes slowly; islands of which a joint holds a
+sheet, or of which one touches a part that moves; all sheets of a scene in which sheets stick on other parts,
+or loads or gravity change over time.
 """
 
 from __future__ import annotations
@@ -60,19 +59,19 @@ from mdlgen.model.tables import Ints, Model
 from mdlgen.model.wider import wider, with_margin
 from mdlgen.runs.checkpoint import Checkpointer, State
 
-# What is carried over by body, from the nodes: velocity and angular momentum at the end of the last step, and
-# velocities in its middle and in those of the two before.
+# Widths of the values that are carried over by body, from the nodes: velocity and angular momentum at the end
+# of the last step, and velocities in its middle and in those of the two before.
 WIDTHS = {"v": 3, "l": 3, "u": 6, "last": 6, "earlier": 6}
-# What a checkpoint has: the margin of the pairs, which sheets sleep, and of Asleep.
+# Names in a checkpoint: the margin of the pairs; sheets that sleep or are gone; fields of Asleep.
 MARGIN = "margin"
 SHEETS, GONE = "sleep.sheets", "sleep.gone"
-# Columns of contacts that a sheet no longer has which has left.
+# Columns of contacts that are reset when a sheet leaves.
 NO_MORE = np.array([FORCE_NOW, DEPTH_NOW, ACTS, *range(TURNING_NOW, TURNING_NOW + TURNING)])
 OF_STEPS = ("speeds", "missed", "may")
 
 
 class Sleep:
-    """Which sheets of a pass sleep; the System that is awake, what its steps work on and are steered by."""
+    """Sleeping sheets of a pass; the System that is awake, with its workspace and control."""
 
     def __init__(
         self,
@@ -84,11 +83,11 @@ class Sleep:
         sleeps: bool,
         there: tuple[System, Ints] | None = None,
     ):
-        """`sleeps`: sheets may; `there`: the part of the System that is there as the run begins, and which of
-        its pairs before those that are searched that has; None: all of it."""
+        """`sleeps`: sheets may sleep; `there`: the part of the System that is present at the beginning, and
+        the numbers of its pairs, without searched ones; None: all of it."""
         from mdlgen.backends.lattice.kernels.integrate import momentum
 
-        # writes what rules ordered into records of bodies that are made anew
+        # writes the orders of rules into new records of bodies
         self.ordered: Callable[[np.ndarray], None] = lambda bodies: None
         self.work, self.steering = work, steering
         self.system, self._chosen = there or (system, np.arange(system.search.first))
@@ -119,12 +118,12 @@ class Sleep:
 
     @property
     def asleep(self) -> NDArray[np.bool_]:
-        """Which sheets sleep, (sheets,)."""
+        """True for sheets that sleep, (sheets,)."""
         return self._sheets
 
     def look(self, t: float, tolerance: float) -> None:
-        """Finds islands, and puts to sleep what has been still for long enough at the time t [ms];
-        `tolerance`: of a step."""
+        """Finds islands, and puts to sleep those that were still for long enough at the time t [ms];
+        `tolerance`: that of a step."""
         if not len(self._sheets):
             return
         asleep, rows = self.work.asleep, self.work.kept.rows
@@ -147,7 +146,7 @@ class Sleep:
             self._turn(self._sheets | still, t)
 
     def wake(self, body: int, t: float) -> None:
-        """Wakes the sheet of a box, and all that sleep and touch it, each other among them."""
+        """Wakes the sheet of a box, and all sleeping sheets of its island."""
         disturbed = self._parts.sheet_of[body]
         self._wait[disturbed] *= 2.0
         islands = self._islands(self.work.kept.rows[:, ACTS] != 0.0)
@@ -156,15 +155,15 @@ class Sleep:
         self._turn(self._sheets & ~woken, t)
 
     def widen(self) -> bool:
-        """Chooses pairs with a wider margin, where a body has left its bounds; whether that helps. Raises
-        UnhalvedError."""
+        """Chooses pairs with a wider margin, where a body has left its bounds; returns True if that helps.
+        Raises UnhalvedError."""
         model = wider(self._model, self.work.state.x[: len(self._model.bodies.name)])
         if model is not None:
             self._widen(model)
         return model is not None
 
     def _widen(self, model: Model) -> None:
-        """Goes on with the pairs of a Model that has those of this one and more."""
+        """Continues with the pairs of a Model that has those of this one and more."""
         whole = system_of(model, self._whole)
         at, motion = places(self._whole, whole), self.work.mid.motion
         self._beside[self._chosen] = self.system.pairs["beside"][: len(self._chosen)]
@@ -184,7 +183,7 @@ class Sleep:
         self._recorder.follow(self.work, self._energies)
 
     def _islands(self, touching: NDArray[np.bool_]) -> NDArray[np.int64]:
-        """Of each sheet the first one of its island, by contacts that are `touching` (contacts,)."""
+        """First sheet of the island of each sheet, by contacts that are `touching` (contacts,)."""
         one, two = self._parts.sheets
         both = touching & (one >= 0) & (two >= 0)
         one, two, found = one[both], two[both], np.arange(len(self._sheets))
@@ -196,7 +195,7 @@ class Sleep:
                 return found
 
     def _turn(self, sheets: NDArray[np.bool_], t: float) -> None:
-        """Lets the `sheets` sleep, and no others, from the state at the time t on."""
+        """Lets exactly the `sheets` (sheets,) sleep, from the state at the time t on."""
         from mdlgen.backends.lattice.kernels import forces
         from mdlgen.backends.lattice.kernels.integrate import room
 
@@ -219,7 +218,7 @@ class Sleep:
         state = old.state._replace(v=v, l=l, u=u)
         mid.motion.x[:], mid.motion.r[:] = state.x, state.r
         bodies = self._whole.nodes[sheets[self._whole.sheets]]
-        # nothing that is awake touched them as they fell asleep; what slept before goes on missing
+        # nothing awake touches sheets that fall asleep; those that slept before keep their missed impulses
         missed = np.zeros((len(self._whole.bodies), 6))
         missed[old.asleep.bodies] = old.asleep.missed
         rows = self._parts.lasting(sheets)
@@ -234,8 +233,8 @@ class Sleep:
         self._recorder.follow(self.work, self._energies)
 
     def change(self, gone: NDArray[np.bool_], t: float) -> np.ndarray:
-        """From the time t [ms] on the sheets `gone` (sheets,) are not there, and all others are. Returns how
-        much more energy there is then: kinetic, elastic and potential, of one side, (groups, 3)."""
+        """Removes the sheets `gone` (sheets,) from the time t [ms] on, and adds all others. Returns the
+        change of energy: kinetic, elastic and potential, of one side, (groups, 3)."""
         left, came = gone & ~self.gone, self.gone & ~gone
         acts = self.work.kept.rows[:, ACTS] != 0.0
         islands = self._islands(acts)
@@ -275,7 +274,7 @@ class Sleep:
         self._beside[some] = pairs["beside"]
 
     def _ledger(self, t: float) -> np.ndarray:
-        """Kinetic, elastic and potential energy of what is awake, of one side, (groups, 3)."""
+        """Kinetic, elastic and potential energy of the awake part, of one side, (groups, 3)."""
         from mdlgen.backends.lattice.kernels.integrate import observe
 
         energies, rows = np.zeros_like(self._energies), np.zeros_like(self.work.kept.rows)
@@ -283,7 +282,7 @@ class Sleep:
         return energies
 
     def _put_back(self) -> None:
-        """Gives pairs whose friction sticks their stretches."""
+        """Restores the stretches of pairs whose friction sticks."""
         first, places = self.system.search.first, self.work.mid.sticks.pairs
         pairs = self.system.pairs[first:]
         count, many = len(self._whole.bodies), many_searched(self.system.search)
@@ -300,7 +299,7 @@ class Sleep:
     # -- checkpoints
 
     def carried(self) -> State:
-        """All that it goes on from, besides the state of what is awake."""
+        """Its state for a checkpoint, in addition to the state of the awake part."""
         margin = np.array([self._model.pairs.margin])
         if not len(self._sheets):
             return {MARGIN: margin}
@@ -320,8 +319,8 @@ class Sleep:
         }
 
     def lie_down(self, keep: Checkpointer, number: int) -> bool:
-        """Takes the margin that a pass had where it was kept, and lets those sleep that slept there, so that
-        its arrays fit. False where it was begun again since, with a wider margin."""
+        """Restores the margin of a checkpoint and its sleeping sheets, so that its arrays fit. False where
+        the pass was begun again since, with a wider margin."""
         own = self._model.pairs.margin
         kept = keep.load(number, {MARGIN: np.zeros(1)}, (MARGIN,))
         margin = own if kept is None else float(kept[MARGIN][0])
@@ -339,7 +338,7 @@ class Sleep:
         return True
 
     def restore(self, found: dict[str, Any]) -> None:
-        """Takes over what `carried` gave."""
+        """Restores the state that `carried` returned."""
         if not len(self._sheets):
             return
         self._stuck = found.pop("sleep.stuck")

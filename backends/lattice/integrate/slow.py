@@ -1,4 +1,4 @@
-"""What a pass says as it goes where it is slow: how far it is, and the step and the body that hold it up."""
+"""Reports of a slow pass: its progress, and the step and the body that slow it down."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from mdlgen.backends.lattice.kernels.state import LEVEL, STEPS, TOUCHING, WORST,
 from mdlgen.backends.lattice.kernels.tuning import HELD_UP, REPORTED
 from mdlgen.model.tables import Model
 
-# Who shows the progress of a run listens here; `mdlgen run` does.
+# Callback for those who show the progress of a run, such as `mdlgen run`.
 LOG = logging.getLogger("mdlgen.slow")
 
 
@@ -24,7 +24,7 @@ class Slow:
         self._since = 0.0
 
     def tell(self, t: float, step: float, took: float) -> None:
-        """A call with steps of that length [ms] ended at t [ms], and took so long [s]."""
+        """Reports after a call with steps of that length [ms] that ended at t [ms] and took `took` [s]."""
         self._since += took
         if self._since < REPORTED:
             return

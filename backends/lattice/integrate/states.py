@@ -1,8 +1,8 @@
 """Places and velocities of all bodies at the times that a run stores.
 
-There is one array of each from the start, which the result takes as it is: of a pile of a hundred sheets
-they are most of what a run needs. Rotations are kept as Euler parameters, which are worked out of some states
-at a time.
+There is one array of each from the start, which the result takes without a copy: for a pile of a hundred
+sheets they are most of the memory of a run. Rotations are stored as Euler parameters, computed for several
+states at a time.
 """
 
 from __future__ import annotations
@@ -28,8 +28,8 @@ class States:
         bodies = len(model.bodies.name)
         self._arrays: dict[str, Floats] = {k: np.empty((room, bodies, n)) for k, n in WIDTHS.items()}
         self.count = 0
-        # how many states are whole, and the rotations (bodies, 9) of those that follow; both at once, since
-        # another thread may look at what there is
+        # number of complete states, and the rotations (bodies, 9) of the others; in one tuple, since another
+        # thread may read it
         self._ready: tuple[int, list[np.ndarray]] = (0, [])
 
     def add(self, motion: Motion) -> None:
@@ -49,7 +49,7 @@ class States:
             self._complete()
 
     def _complete(self) -> None:
-        """Works out what there is not yet of all states."""
+        """Completes all states that are stored but not yet complete."""
         whole, turned = self._ready
         if turned:
             self._fill({name: array[whole : self.count] for name, array in self._arrays.items()}, turned)
@@ -81,7 +81,7 @@ class States:
         return found | {"e": _without_jumps(found["e"])}
 
     def restore(self, arrays: dict[str, Floats]) -> None:
-        """Goes back to what `all` gave."""
+        """Restores the state that `all` returned."""
         self.count = len(arrays["x"])
         room = max(self.count, len(self._arrays["x"]))
         for name, array in arrays.items():

@@ -1,8 +1,8 @@
 """A pass that continues after a body has left its bounds: on pairs that are chosen with a wider margin.
 
-The pairs of boxes and parts stand first among the pairs, in an order that does not depend on the margin. So
-those that are new stand between the others, and all else that a step works on is carried over as it is. A
-run that widens its margin takes the same steps as one with all pairs from its start.
+The pairs of boxes and parts come first among the pairs, in an order that does not depend on the margin. So
+new ones are inserted between the others, and all other data of a step is carried over unchanged. A run that
+widens its margin takes the same steps as a run with all pairs from its start.
 """
 
 from __future__ import annotations
@@ -30,8 +30,8 @@ OF_PAIRS = ("touched", "results", "rows", "faces", "near", "does", "lies")
 
 
 class UnhalvedError(Exception):
-    """With the pairs of this Model a scene is not its own mirror image: boxes reach parts on the other
-    side."""
+    """Raised where a scene with the pairs of this Model is not its own mirror image: boxes reach parts on the
+    other side."""
 
     def __init__(self, model: Model):
         super().__init__()
@@ -41,7 +41,7 @@ class UnhalvedError(Exception):
 def begins_again(
     one: Callable[Concatenate[Model, System, P], Result],
 ) -> Callable[Concatenate[Model, System, P], Result]:
-    """A pass of a halved scene that takes both sides, from the start, where a wider margin asks for it."""
+    """Wraps a pass of a halved scene: it begins again with both sides where a wider margin requires it."""
 
     @wraps(one)
     def either(model: Model, system: System, *args: P.args, **named: P.kwargs) -> Result:
@@ -55,7 +55,7 @@ def begins_again(
 
 
 def _built(model: Model, like: System) -> System:
-    """The System of a Model, with its bushings folded as there; where none is folded none can be."""
+    """The System of a Model, with its bushings folded as in `like`."""
     return build(model, fold=like.folded > 0)
 
 
@@ -71,7 +71,7 @@ def system_of(model: Model, like: System) -> System:
 
 
 def places(old: System, new: System) -> Ints:
-    """Where the pairs of boxes and parts of one System stand among those of the other."""
+    """Places of the pairs of boxes and parts of one System among those of the other."""
     mine, other = (_keys(s.pairs[: s.search.first], len(s.bodies)) for s in (old, new))
     order = np.argsort(other)
     return order[np.searchsorted(other[order], mine)]
@@ -99,7 +99,8 @@ def marks_of(marks: np.ndarray, old: Model, new: Model) -> np.ndarray:
 
 
 def besides(whole: System, beside: np.ndarray, at: Ints, motion: Motion) -> np.ndarray:
-    """What pairs of boxes and parts remember: those `at` these numbers as before, new ones by the state."""
+    """Memory of pairs of boxes and parts: unchanged for those at the numbers `at`, from the state for new
+    ones."""
     from mdlgen.backends.lattice.kernels import entries
 
     pairs = whole.pairs[: whole.search.first].copy()
@@ -109,7 +110,7 @@ def besides(whole: System, beside: np.ndarray, at: Ints, motion: Motion) -> np.n
 
 
 def carried_over(model: Model, work: Workspace, system: System, marks: np.ndarray) -> Workspace:
-    """What steps work on with the pairs of this System, all else as it stands."""
+    """The workspace with the pairs of this System; all other arrays are carried over."""
     from mdlgen.backends.lattice.kernels import entries, forces
     from mdlgen.backends.lattice.kernels.integrate import room
 

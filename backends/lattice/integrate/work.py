@@ -1,4 +1,4 @@
-"""What a run works on, made for its start."""
+"""Builds the workspace of a run for its start."""
 
 from __future__ import annotations
 
@@ -61,8 +61,8 @@ def start(model: Model, system: System) -> tuple[State, Midpoint, Matrix]:
 
 
 def starts(model: Model, nodes: Ints) -> tuple[Floats, ...]:
-    """What boxes, the bodies `nodes` (n,), come in with: velocities [mm/ms], angular momenta [N mm ms],
-    (n, 3) each, and velocities with angular velocities [rad/ms], (n, 6), as in two steps before."""
+    """Initial values of boxes, the bodies `nodes` (n,): velocities [mm/ms], angular momenta [N mm ms], (n, 3)
+    each; and velocities with angular velocities [rad/ms], (n, 6), for the two steps before."""
     bodies = model.bodies
     turn, spin, v = bodies.rotation[nodes], bodies.spin[nodes], bodies.velocity[nodes]
     own = np.einsum("nji,nj->ni", turn, spin)
@@ -72,8 +72,8 @@ def starts(model: Model, nodes: Ints) -> tuple[Floats, ...]:
 
 
 def beginning(model: Model, system: System) -> tuple[System, Ints]:
-    """The part of a System that is there as a run begins, and which of its pairs before those that are
-    searched that has: all of it where no sheet comes in later."""
+    """The part of a System that is present as a run begins, and the numbers of its pairs, without searched
+    ones: all of it where no sheet comes in later."""
     there = np.array(at_start(model))
     if there.all():
         return system, np.arange(system.search.first)
@@ -81,8 +81,8 @@ def beginning(model: Model, system: System) -> tuple[System, Ints]:
 
 
 def arrays(model: Model, whole: System, there: System | None = None) -> Workspace:
-    """What a run works on, made for the start. `there`: the part of the System that is there then, None: all
-    of it."""
+    """Workspace of a run at its start. `there`: the part of the System that is present then, None: all of
+    it."""
     from mdlgen.backends.lattice.kernels import entries
 
     system = whole if there is None else there
@@ -115,7 +115,7 @@ def workspace(
     islands: Islands,
     asleep: Asleep,
 ) -> Workspace:
-    """What a run works on from a state, with pairs of boxes of two sheets searched for it."""
+    """Workspace of a run from a state, for which the pairs of boxes of two sheets are searched."""
     from mdlgen.backends.lattice.kernels import entries, forces
     from mdlgen.backends.lattice.kernels.contact import condensed
     from mdlgen.backends.lattice.kernels.integrate import damped, momentum, room
@@ -142,12 +142,12 @@ def workspace(
 
 
 def bounds_of(model: Model) -> Bounds:
-    """Where the bodies of a Model may be, in arrays of their own (see limit.Cut)."""
+    """Bounds on the places of the bodies of a Model, in their own arrays (see limit.Cut)."""
     return Bounds(_own(model.pairs.low), _own(model.pairs.high))
 
 
 def _own(array: Floats) -> Floats:
-    """The same in an array of its own, which compiled code may only read, as it may the Model's."""
+    """A copy that compiled code may only read, like the arrays of the Model."""
     shown = array.copy().view()
     shown.flags.writeable = False
     return shown
@@ -170,9 +170,9 @@ def warm(model: Model, system: System) -> None:
     work = arrays(model, system, beginning(model, system)[0])
     integrate.run(work, 0.0, np.zeros(0), 1.0, control(work))
     Recorder(model, system, work).store(0.0)
-    entries.PROGRAM.release()  # else the arrays of its last calls stay beside those of the run
+    entries.PROGRAM.release()  # frees the arrays of its last calls
 
 
 def flexible(model: Model) -> bool:
-    """Whether a sheet has more than one box."""
+    """True if a sheet has more than one box."""
     return any(sheet.count > 1 for sheet in model.sheets)

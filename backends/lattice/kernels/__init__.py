@@ -1,6 +1,6 @@
-"""All compiled code of this solver; what Python calls of it stands in `entries`, what it works on in `state`.
+"""All compiled code of this solver. `entries` has the functions that Python calls, `state` their data.
 
-Rooms, from the lowest: `linear`, systems of linear equations; `contact`, pairs and the contact solve;
-`integrate`, steps in time; `statics`, equilibrium. What all of them use is beside them: `forces`, and
-`image` for mirrored bodies.
+Packages, from the lowest: `linear`, systems of linear equations; `contact`, pairs and the contact solve;
+`integrate`, steps in time; `statics`, equilibrium. All of them use the modules `forces`, and `image` for
+mirrored bodies.
 """

@@ -1,6 +1,6 @@
-"""What Python calls of this solver's compiled code, and the program that it is shipped as.
+"""Functions of this solver's compiled code that Python calls, and the program in which they are shipped.
 
-No kernel calls an entry: what others call, too, has a wrapper here.
+No kernel calls an entry: a kernel that other kernels call, too, has a wrapper here.
 """
 
 from __future__ import annotations

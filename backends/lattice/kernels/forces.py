@@ -1,4 +1,4 @@
-"""Forces of everything on everything at one state, and the contact points that a tangent is made from."""
+"""Forces on all bodies at one state, and the contact points from which a tangent is assembled."""
 
 from __future__ import annotations
 
@@ -48,7 +48,7 @@ WIDE = OUT + 1 + POINT * MOST_POINTS
 
 @njit(cache=True, error_model="numpy", forceinline=True, **FUSED)
 def place_box(b, h, rate, spin, x, r, motion):
-    """One free box after h at a velocity and an angular velocity from places x and rotations r."""
+    """Places one free box after h at a velocity and an angular velocity, from places x and rotations r."""
     xm, rm, um, wm = motion
     m = matmul(exp_rotation(scale(h, spin)), mat(r, b))
     for i in range(9):
@@ -61,7 +61,7 @@ def place_box(b, h, rate, spin, x, r, motion):
 
 @njit(cache=True, error_model="numpy", forceinline=True)
 def turn_roller(body, b, h, t, turning, r, rm):
-    """Turns a roller by what it does in h at the rate `turning`, its own or that of its arm, and by its drive
+    """Turns a roller by h at the rate `turning`, its own or that of its arm, plus the rotation of its drive
     up to the time t."""
     angle = h * turning
     if body.spin < 0:
@@ -73,9 +73,9 @@ def turn_roller(body, b, h, t, turning, r, rm):
 
 @njit(cache=True, error_model="numpy", forceinline=True, **FUSED)
 def place_roller(body, b, h, t, rate, turning, x, r, motion):
-    """One roller after h at the rates of its slide and its spin, where it has them; t: that time. One that is
-    round need not turn. A pressed plate has a slide alone. What a law of its place moves is where the middle
-    of a step of 2 h has it."""
+    """Places one roller at time t, after h at the rates of its slide and its spin, where it has them. A round
+    roller need not turn. A pressed plate has a slide alone. A body with a prescribed place is put where it is
+    in the middle of a step of 2 h."""
     if body.swings >= GATE:
         middle_of_gate(body, b, h, t, x, r, motion)
         return
@@ -99,7 +99,7 @@ def place_roller(body, b, h, t, rate, turning, x, r, motion):
 
 @njit(cache=True, error_model="numpy", **BORROWS, **FUSED)
 def place(tables, h, t, state, motion):
-    """The Motion of all bodies after h at the velocities state.u and state.ub, at the time t."""
+    """Sets the Motion of all bodies after h at the velocities state.u and state.ub, at the time t."""
     bodies, nodes, images = tables.bodies, tables.nodes, tables.images
     x, r, u, ub = state.x, state.r, state.u, state.ub
     for n in range(nodes.size):
@@ -122,10 +122,10 @@ def _add(f, b, force, torque):
 
 @njit(cache=True, error_model="numpy", **BORROWS, **FUSED)
 def joint_forces(joints, points, motion, f, lag=0.0):
-    """Adds the forces of all joints to f (bodies, 6), with `lag` [ms] times the stiffness on top of the
-    damping, less the damping time that a joint has itself. `points` are those of the curves that some follow.
-    Returns (stored energy, dissipated power, the part of it that is due to `lag`), of a joint that ends at an
-    image only the half."""
+    """Adds the forces of all joints to f (bodies, 6). Numerical damping adds the stiffness times `lag` [ms]
+    less the damping time of the joint itself. `points`: points of the force curves of joints. Returns (stored
+    energy, dissipated power, the part of it due to `lag`); a joint that ends at a mirror image counts
+    half."""
     stored = lost = numerical = 0.0
     x, r, u, w = motion
     last = x.shape[0] - 1
@@ -168,8 +168,8 @@ def joint_forces(joints, points, motion, f, lag=0.0):
 
 @njit(cache=True, error_model="numpy", **BORROWS)
 def joint_forces_of_sheets(tables, motion, f, lag, spent):
-    """Adds the forces of all joints as joint_forces does, and those of corners. What each of tables.runs
-    dissipates, and how much of that is due to `lag`, goes into spent (runs, 2)."""
+    """Adds the forces of all joints as joint_forces does, and those of corners. Writes the power that each of
+    tables.runs dissipates, and its part due to `lag`, into spent (runs, 2)."""
     runs = tables.runs
     for k in range(runs.shape[0]):
         own = tables.joints[runs[k, 0] : runs[k, 1]]
@@ -194,11 +194,11 @@ def near_of_model(tables, motion, margin, ahead, found):
 
 @njit(cache=True, error_model="numpy", **BORROWS)
 def near_of_search(tables, motion, margin, ahead, found):
-    """Lists those that are searched alone."""
+    """Lists the near pairs among those that are searched."""
     bodies, listed, shapes, count = tables.bodies, tables.listed, tables.shapes, 0
     first = tables.pairs.size - listed.size
     for k in range(listed.size):
-        if listed[k].a < 0:  # from here on there is room only
+        if listed[k].a < 0:  # the rest is unused capacity
             break
         if near_boxes(bodies, listed[k], shapes, motion, margin, ahead):
             found[count] = first + k
@@ -208,15 +208,15 @@ def near_of_search(tables, motion, margin, ahead, found):
 
 @njit(cache=True, error_model="numpy", **BORROWS)
 def near_pairs(tables, motion, margin, ahead, found):
-    """Lists pairs in `found` that are closer than `margin` [mm] and what they move against each other in
-    `ahead` [ms]; returns how many."""
+    """Lists pairs in `found` whose gap is below `margin` [mm] plus their relative motion in `ahead` [ms];
+    returns how many."""
     count = near_of_model(tables, motion, margin, ahead, found)
     return count + near_of_search(tables, motion, margin, ahead, found[count:])
 
 
 @njit(cache=True, error_model="numpy", **BORROWS)
 def onto(f, pair, out):
-    """Adds what a pair does to the forces on its bodies."""
+    """Adds the forces of a pair to those on its bodies."""
     for i in range(6):
         f[pair.a, i] += out[FORCE_A + i]
         f[pair.b, i] += out[FORCE_B + i]
@@ -224,7 +224,7 @@ def onto(f, pair, out):
 
 @njit(cache=True, error_model="numpy", **BORROWS)
 def touches(tables, pair, motion, f, out):
-    """What one pair does into `out`, and onto f. Returns whether it touches."""
+    """Writes the result of one pair into `out` and adds its forces to f. Returns True if it touches."""
     for i in range(HOLDS + 1):
         out[i] = 0.0
     out[POINTS] = 0.0
@@ -257,8 +257,8 @@ def pair_forces(tables, near, close, motion, f, touched, results):
 
 @njit(cache=True, error_model="numpy", **BORROWS)
 def pair_forces_again(tables, near, close, known, motion, f, touched, results):
-    """As pair_forces where some pairs are `known`: (those that touch, what they do, how many, whether a pair
-    is among those looked at)."""
+    """As pair_forces where some pairs are `known`: (those that touch, their results, how many, true for each
+    pair that was evaluated)."""
     had, done, many, seen = known
     count = 0
     stored = lost = 0.0
@@ -282,8 +282,8 @@ def pair_forces_again(tables, near, close, known, motion, f, touched, results):
 
 @njit(cache=True, error_model="numpy", **BORROWS)
 def clutch_torques(tables, t, h, state, f):
-    """Adds the torques of clutches, motors, limiters and bearings on the rollers that turn at the rates of a
-    state, at a time h after it."""
+    """Adds the torques of clutches, motors, limiters and bearings on rollers at the rates of a state, at a
+    time h after it."""
     bodies, axles = tables.bodies, tables.shapes.axles
     s, ub = state.s, state.ub
     for b in tables.moving:

@@ -8,13 +8,13 @@ from mdlgen.program.kernel import njit
 
 @njit(cache=True, error_model="numpy", forceinline=True)
 def _seen(v, normal):
-    """A vector as a mirror shows it."""
+    """Mirror image of a vector."""
     return sub(v, scale(2.0 * dot(normal, v), normal))
 
 
 @njit(cache=True, error_model="numpy")
 def reflect(images, x, r):
-    """Places each image where its body is seen."""
+    """Places each mirrored body at the mirror image of its original."""
     for i in range(images.size):
         image = images[i]
         b, of, normal, signs = image.body, image.of, three(image.normal), image.signs
@@ -29,7 +29,7 @@ def reflect(images, x, r):
 
 @njit(cache=True, error_model="numpy")
 def reflect_rates(images, u, w):
-    """Gives each image the velocity that is seen; what turns is seen to turn the other way."""
+    """Sets the velocity of each mirrored body: the mirror image, with the opposite sense of rotation."""
     for i in range(images.size):
         b, of, normal = images[i].body, images[i].of, three(images[i].normal)
         rate, spin = _seen(vec(u, of), normal), _seen(vec(w, of), normal)

@@ -1,15 +1,17 @@
 """The limit surface of a sheet's contacts: which forces and couples along a plane friction can hold.
 
 A contact at the place r holds a force t in a convex set K of the plane: a disc of the radius mu N where it
-lies flat, an ellipse where its normal leans. All contacts together hold the wrenches (F, M) = sum (t, r x t),
-Coulomb's limit surface, which is convex. So the part of a wrench w that they hold is
+lies flat, an ellipse where its normal is inclined. All contacts together hold the wrenches (F, M) = sum
+(t, r x t), Coulomb's limit surface, which is convex. So the part of a wrench w that they hold is
 
-    min over all twists q = (v, omega) with w.q = 1 of  sum max over t in K of  -t.(v + omega x r),
+    min sum max -t.(v + omega x r),
 
-the power that friction dissipates in a rigid motion over the power of w (Goyal, Ruina and Papadopoulos
-1991, "Planar sliding with dry friction"). Each twist yields an upper bound of that part, and a wrench on the
-surface. The convex hull of these wrenches is held: a linear program finds how far w reaches in it, a lower
-bound. The dual of the program is the next twist. The search ends where both differ by less than LIMIT_CLOSE.
+with the minimum over all twists q = (v, omega) with w.q = 1, the maximum over t in K, and the sum over all
+contacts. It is the power that friction dissipates in a rigid motion, over the power of w (Goyal, Ruina and
+Papadopoulos 1991, "Planar sliding with dry friction"). Each twist yields an upper bound of that part, and a
+wrench on the surface. The contacts hold the convex hull of these wrenches. A linear program finds the largest
+part of w in it, a lower bound. The dual of the program is the next twist. The search ends where both bounds
+differ by less than LIMIT_CLOSE.
 """
 
 from __future__ import annotations
@@ -23,18 +25,19 @@ from mdlgen.model.tables import Floats
 
 
 class Grips(NamedTuple):
-    """What contacts may hold along a plane: t = centre + shape e with |e| <= 1, at places on it [mm, N]."""
+    """Forces that contacts can hold along a plane: t = centre + shape e with |e| <= 1, at places on it
+    [mm, N]."""
 
     place: Floats  # (n, 2)
     centre: Floats  # (n, 2)
     shape: Floats  # (n, 2, 2), symmetric
 
     def at(self, origin: Floats) -> Grips:
-        """With places from there."""
+        """The same with places relative to `origin`."""
         return self._replace(place=self.place - origin)
 
     def answer(self, twist: Floats) -> tuple[float, Floats]:
-        """The most power of forces in these sets at a twist (v_x, v_y, omega), and the wrench of those."""
+        """Greatest power of forces in these sets at a twist (v_x, v_y, omega), and the wrench of these."""
         x, y = self.place.T
         rate = np.stack([twist[0] - twist[2] * y, twist[1] + twist[2] * x], axis=1)
         along = np.einsum("nij,nj->ni", self.shape, rate)
@@ -45,19 +48,19 @@ class Grips(NamedTuple):
         return float(wrench @ twist), wrench
 
     def middle(self) -> Floats:
-        """The centre of friction: of the contacts, by how much each holds."""
+        """Centre of friction: the mean place of the contacts, weighted by the force that each can hold."""
         most = np.linalg.norm(self.shape, axis=(1, 2))
         return most @ self.place / max(float(most.sum()), 1e-300)
 
     def reach(self) -> float:
-        """How far contacts are from the origin, their root mean square [mm]; 1 where all are there."""
+        """Root mean square distance of contacts from the origin [mm]; 1 where all are there."""
         most = np.linalg.norm(self.shape, axis=(1, 2))
         square = float(most @ (self.place**2).sum(axis=1)) / max(float(most.sum()), 1e-300)
         return float(np.sqrt(square)) or 1.0
 
 
 class Limit(NamedTuple):
-    """The part of a wrench that is held, the twist that it gives way by, and how far the part may be off."""
+    """Part of a wrench that is held, the twist by which it slides, and the error bound of the part."""
 
     part: float
     twist: Floats  # (3,) by which the wrench works 1
@@ -65,8 +68,8 @@ class Limit(NamedTuple):
 
 
 def cone(force: Floats, normal: Floats, friction: float) -> tuple[Floats, Floats]:
-    """Centre (2,) and shape (2, 2) of what a contact may hold along the plane z = 0 beyond its `force` (3,)
-    [N], which stands within the cone of friction about its normal (3,)."""
+    """Centre (2,) and shape (2, 2) of the forces that a contact can hold along the plane z = 0 beyond its
+    `force` (3,) [N], which is within the cone of friction about its normal (3,)."""
     lean = normal[:2]
     sine, cosine = float(np.hypot(*lean)), float(normal[2])
     if sine < 1e-9:
@@ -84,8 +87,8 @@ def cone(force: Floats, normal: Floats, friction: float) -> tuple[Floats, Floats
 
 
 def limit(grips: Grips, wrench: Floats) -> Limit:
-    """Which part of a wrench (F_x, F_y, M) [N, N mm] that pulls, about the origin, contacts hold with one
-    against it; above 1: it stands."""
+    """Part of an applied wrench (F_x, F_y, M) [N, N mm], about the origin, that the contacts hold; above 1:
+    it is held wholly."""
     from scipy.optimize import linprog
 
     # a length and a force of the contacts as units: forces and couples count alike

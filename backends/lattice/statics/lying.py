@@ -1,13 +1,13 @@
-"""Sheets that lie on a plane at rest: friction holds each where it lies.
+"""Sheets that lie on a plane at rest: friction holds each in its place.
 
-At rest a contact has its normal force alone. What would push a sheet along the plane is held at one of its
-boxes, by springs along the plane and about its normal, in the face that lies there. What they hold, a force
-and a couple, must be within the limit surface of all contacts of the sheet (see limit).
+At rest a contact has its normal force alone. Springs along the plane and about its normal hold a sheet, at
+the face of one of its boxes that lies there. Their force and couple must be within the limit surface of all
+contacts of the sheet (see limit).
 
 Where a sheet slopes over an edge, friction turns the force of the edge towards the plate's normal (see
 mechanics.edge). Such a force has no potential, and the symmetric stiffness of a balance would miss that. So
-balances are found with forces along the normals of the sheet, and what friction adds at the last one acts as
-a load on the next, until it changes no more.
+balances use forces along the normals of the sheet. The friction force of the last balance acts as a load on
+the next one, until it no longer changes.
 """
 
 from __future__ import annotations
@@ -29,7 +29,7 @@ from mdlgen.model.tables import BOX_PLANE, GROUND, Floats, Model, PlanePart, She
 
 
 class Hold(NamedTuple):
-    """A sheet, the plane it lies on, the box that is held, and the stiffness [N/mm]."""
+    """A sheet, the plane on which it lies, the box that is held, and the stiffness [N/mm]."""
 
     sheet: SheetPart
     plane: PlanePart
@@ -37,21 +37,21 @@ class Hold(NamedTuple):
     stiffness: float
 
     def base(self, model: Model) -> Floats:
-        """Where the box is held (3,), in its own axes: below its middle, in the face of the plane, where
-        friction acts."""
+        """Place at which the box is held (3,), in its own axes: below its middle, in the face of the plane,
+        where friction acts."""
         bodies = model.bodies
         normal = bodies.rotation[self.plane.body][:, 2]
         high = float((bodies.position[self.box] - bodies.position[self.plane.body]) @ normal)
         return -(high - 0.5 * self.plane.size[2]) * (normal @ bodies.rotation[self.box])
 
     def pulls(self, model: Model, x: Floats, r: Floats) -> tuple[Floats, Floats]:
-        """What it holds with bodies at x (n, 3), their rotations r (n, 9): the force along the plane [N] and
-        the couple about its normal [N mm], (3,), and where (3,)."""
+        """Load of the springs with bodies at x (n, 3), their rotations r (n, 9): the force along the plane
+        [N] and the couple about its normal [N mm], (3,), and the place (3,)."""
         axes, own = model.bodies.rotation[self.plane.body], r[self.box].reshape(3, 3)
         first, base = model.bodies.rotation[self.box], self.base(model)
         turn = vectors(axes.T @ own @ first.T @ axes)
         place = x[self.box] + own @ base
-        # in the frame halfway, as of any bushing
+        # in the middle frame, as for any bushing
         halfway = matrices(0.5 * turn)
         moved = (place - model.bodies.position[self.box] - first @ base) @ axes @ halfway
         moved[2] = 0.0
@@ -60,12 +60,12 @@ class Hold(NamedTuple):
 
 
 def _arm(model: Model, box: int) -> float:
-    """Half of a box's sides together [mm]."""
+    """Half of the sum of a box's sides [mm]."""
     return float(model.bodies.half[box, :2].sum())
 
 
 def holds(model: Model, loose: list[SheetPart], load: float) -> list[Hold]:
-    """What holds those of the `loose` sheets that lie over a fixed plane with friction: at the box that is
+    """A Hold for each of the `loose` sheets that lies over a fixed plane with friction: at the box that is
     furthest inside of it."""
     return [hold for hold in (_hold(model, sheet, load) for sheet in loose) if hold is not None]
 
@@ -90,7 +90,7 @@ def _hold(model: Model, sheet: SheetPart, load: float) -> Hold | None:
 
 
 def held(model: Model, system: System, found: list[Hold]) -> System:
-    """The system with these holds as joints to the ground."""
+    """The System with these holds as joints to the ground."""
     joints = np.zeros(len(found), JOINT)
     for joint, hold in zip(joints, found, strict=True):
         axes, own = model.bodies.rotation[hold.plane.body], model.bodies.rotation[hold.box]
@@ -106,8 +106,8 @@ def held(model: Model, system: System, found: list[Hold]) -> System:
 def slides(
     model: Model, systems: tuple[System, System], found: list[Hold], load: float, place: tuple, mid: Midpoint
 ) -> str | None:
-    """A reason where friction does not hold what it should; `systems`: with what friction adds at edges, and
-    without; `place`: x (n, 3), r (n, 9), ...; `mid` is room to work in."""
+    """Reason where friction cannot hold a sheet, or None; `systems`: with the friction at edges, and without;
+    `place`: x (n, 3), r (n, 9), ...; `mid`: scratch."""
     x, r = place[:2]
     for hold in found:
         pulled, origin = hold.pulls(model, x, r)
@@ -127,7 +127,7 @@ def slides(
 
 
 def _gives_way(hold: Hold, pulled: Floats, most: Limit, middle: Floats, length: float, axes: Floats) -> str:
-    """How a sheet gives way to a force and a couple about the `middle` (3,) of its contacts."""
+    """Text for a sheet that yields to a force and a couple about the `middle` (3,) of its contacts."""
     force, couple = float(np.hypot(*pulled[:2])), abs(float(pulled[2]))
     speed, turns = float(np.hypot(*most.twist[:2])), float(most.twist[2])
     if speed > SLIDES_BEYOND * length * abs(turns):
@@ -135,7 +135,7 @@ def _gives_way(hold: Hold, pulled: Floats, most: Limit, middle: Floats, length: 
             f"sheet {hold.sheet.name} slides on plane {hold.plane.name}: {force:.3g} N pull it along, "
             f"and friction holds {most.part * force:.3g} N, {most.part:.3g} of it"
         )
-    # where the rigid motion has no speed
+    # centre of rotation: the place where the rigid motion has no speed
     centre = middle + axes[:, :2] @ (np.array([-most.twist[1], most.twist[0]]) / turns)
     at = ", ".join(f"{value + 0.0:.3g}" for value in centre.round(3))
     return (
@@ -146,7 +146,7 @@ def _gives_way(hold: Hold, pulled: Floats, most: Limit, middle: Floats, length: 
 
 
 class Grip:
-    """What friction adds to the forces of edges, as loads of a system that is without."""
+    """Friction in the forces of edges, as loads on a System without it."""
 
     def __init__(self, system: System) -> None:
         self._with = system
@@ -162,8 +162,8 @@ class Grip:
         self._loads = self.system.loads[len(system.loads) :]
 
     def changed(self, level: float, x: Floats, r: Floats, mid: Midpoint) -> float:
-        """Sets the loads to what friction adds at places x (n, 3) and rotations r (n, 9), a `level` of which
-        will act. Returns by how much that changes the greatest [N]; `mid` is room to work in."""
+        """Sets the loads to the friction at places x (n, 3) and rotations r (n, 9); the part `level` of them
+        will act. Returns the greatest change [N]; `mid`: scratch."""
         from mdlgen.backends.lattice.kernels import entries
 
         still, forces = np.zeros_like(x), []

@@ -1,9 +1,9 @@
-"""Where the contacts of a sheet press, and what friction may hold there along a plane.
+"""Pressure of the contacts of a sheet, and the friction that they can hold along a plane.
 
-The law of a box on a plate has its force in the corners of what lies there, each a part of it. What friction
-holds of a couple goes by how pressure is spread: four corners of a square hold twice what its face does. So
-where corners press alike the force is spread over the face; where those of one side press more, what is more
-over that side; and what one corner has beyond is left there. That moves neither the force nor its centre.
+The law of a box on a plate applies its force at the corners of the overlap. The couple that friction can hold
+depends on the distribution of pressure: four corners of a square hold twice the couple of its face. So the
+part of the force that all corners share is spread over the face; the excess of the corners of one side, over
+that side; and the excess of a single corner stays there. That changes neither the force nor its centre.
 """
 
 from __future__ import annotations
@@ -20,7 +20,7 @@ from mdlgen.model.tables import BOX_CYLINDER, Floats, Model, SheetPart
 
 
 class Press:
-    """Contacts at rest: of each point its place, its normal force and the normal itself [mm, N]."""
+    """Contacts at rest: place, normal force and normal of each point [mm, N]."""
 
     def __init__(self, system: System, x: Floats, r: Floats, mid: Midpoint) -> None:
         from mdlgen.backends.lattice.kernels import entries
@@ -29,7 +29,7 @@ class Press:
         mid.forces[:] = 0.0
         count = entries.contacts(system.tables, Motion(x, r, still, still), mid)
         self.pairs = mid.touched[:count].copy()
-        self.points: list[Floats] = []  # of each pair (n, POINT)
+        self.points: list[Floats] = []  # points of each pair (n, POINT)
         for row in mid.results[:count]:
             many = int(row[POINTS])
             points = row[OUT + 1 : OUT + 1 + POINT * many].reshape(many, POINT)
@@ -44,7 +44,7 @@ def grips(
     place: tuple[Floats, Floats],
     mid: Midpoint,
 ) -> Grips:
-    """What friction may hold of a sheet along a plane; `systems`: with what friction adds at edges, and
+    """Forces that friction can hold on a sheet along a plane; `systems`: with the friction at edges, and
     without; `frame`: axes of the plane (3, 3) and the origin (3,); `place`: x (n, 3) and r (n, 9)."""
     turned, plain = (Press(system, *place, mid) for system in systems)
     ends = systems[0].pairs
@@ -66,7 +66,7 @@ def grips(
             first, normal = points[group[0]], normals[group[0], NORMAL : NORMAL + 3] @ axes
             local = (points[group, AT : AT + 3] - origin) @ axes[:, :2]
             centre, shape = cone(first[NORMAL : NORMAL + 3] @ axes, normal, float(first[MU_STATIC]))
-            if free is not None:  # nothing holds it about its axis
+            if free is not None:  # nothing prevents its rotation
                 along = free @ axes[:, :2]
                 size = float(np.linalg.norm(along))
                 along = along / size if size > 0.0 else along
@@ -79,19 +79,19 @@ def grips(
 
 
 def _divided(pairs: int) -> int:
-    """Into how many parts a side of a triangle is divided, of which a face with four corners has four."""
+    """Number of parts of a side of a triangle; a face with four corners has four triangles."""
     return int(np.clip(np.sqrt(PLACES / (4.0 * max(pairs, 1))), 1, TRIANGLES))
 
 
 def _same(one: Press, two: Press, k: int) -> bool:
-    """Whether both have the same points of a pair."""
+    """True if both have the same points of a pair."""
     return (
         k < len(two.pairs) and bool(one.pairs[k] == two.pairs[k]) and len(one.points[k]) == len(two.points[k])
     )
 
 
 def _faces(points: Floats) -> list[list[int]]:
-    """Points one after the other that have one normal: the corners of one face."""
+    """Consecutive points with the same normal: the corners of one face."""
     groups: list[list[int]] = []
     for i, point in enumerate(points):
         before = points[groups[-1][-1]] if groups else None
@@ -132,7 +132,7 @@ def _spread(corners: Floats, forces: Floats, many: int) -> tuple[Floats, Floats]
 
 
 def _triangle(many: int) -> Floats:
-    """Weights (many^2, 3) of a triangle's corners: the middles of the small triangles of the same size."""
+    """Weights (many^2, 3) of a triangle's corners, for the centres of equal small triangles."""
     found = []
     for i in range(many):
         for j in range(many - i):

@@ -1,4 +1,4 @@
-"""A static run: the load in parts, each in balance before the next."""
+"""A static run: the load is applied in increments, each balanced before the next."""
 
 from __future__ import annotations
 
@@ -47,7 +47,7 @@ from mdlgen.results.result import Result
 
 
 def rest(model: Model, system: System, work: Workspace) -> Result:
-    """The Result of a Model at rest, from its start, at which the arrays of `work` are."""
+    """The Result of a Model at rest, from its start, for which the arrays of `work` are set."""
     from mdlgen.backends.lattice.kernels import entries
     from mdlgen.backends.lattice.kernels.linear.band import PAD
 
@@ -96,7 +96,7 @@ def rest(model: Model, system: System, work: Workspace) -> Result:
             array[:] = old
         return found
 
-    # compiles, or loads from the cache, before the clock starts: against such a load all is in balance
+    # compiles, or loads from the cache, before the clock starts: relative to such a load all is in balance
     balanced(0.0, np.inf)
     falls(0.0)
     begun = clock.perf_counter()
@@ -116,8 +116,8 @@ def rest(model: Model, system: System, work: Workspace) -> Result:
 
 
 def _parts(model: Model, balanced: Callable, load: float, place: tuple) -> str | None:
-    """Brings the whole load into balance, in larger or smaller parts as it goes; a reason where that fails,
-    and the last place in balance."""
+    """Brings the whole load into balance, in increments of variable size. Returns a reason where that fails;
+    then the place is the last one in balance."""
     level, part, iterations = 0.0, FIRST_PART, 0
     reason = None
     while level < 1.0 and iterations < REST_MOST:
@@ -140,7 +140,7 @@ def _parts(model: Model, balanced: Callable, load: float, place: tuple) -> str |
 
 
 def _unbalanced(model: Model, level: float, aim: float, worst: int, force: float) -> str:
-    """Why a part of the load has no balance."""
+    """Reason why a part of the load has no balance."""
     loose = "; at rest friction holds sheets on fixed planes alone" if len(model.pairs) else ""
     return (
         f"no balance was found above {100 * level:.3g} % of the load: at {100 * aim:.3g} % {force:.3g} N are "
@@ -149,8 +149,8 @@ def _unbalanced(model: Model, level: float, aim: float, worst: int, force: float
 
 
 def _load(model: Model, system: System) -> float:
-    """What residuals are measured by [N]: the weight, the loads, or a moment over a sheet's length; where
-    there are none, the springs' preload."""
+    """Force that scales residuals [N]: the weight, the loads, or a moment over a sheet's length; where there
+    are none, the springs' preload."""
     weight = float(system.bodies["mass"][system.nodes].sum() * np.linalg.norm(system.gravity))
     length = max(max(s.size) for s in model.sheets)
     forces = [float(np.linalg.norm(row["force"])) for row in system.loads]
@@ -171,12 +171,13 @@ def _loose(model: Model) -> list[SheetPart]:
 
 
 def _reach(model: Model) -> float:
-    """The longest step [mm]: half of what a box would have to cross to be behind a contact."""
+    """The longest step [mm]: half of the distance that would take a box through a contact."""
     return min((kind_of(part).half_depth(part) for part in model.machine), default=np.inf)
 
 
 def _touch(model: Model, system: System, state: State, mid: Midpoint, kept: Kept) -> str | None:
-    """Contacts at rest into the rows of the Recorder; a reason where a box is too deep in a plane."""
+    """Writes contacts at rest into the rows of the Recorder. Returns a reason where a box is too deep in a
+    plane."""
     from mdlgen.backends.lattice.kernels import entries
 
     still = np.zeros_like(state.x)
@@ -191,7 +192,7 @@ def _touch(model: Model, system: System, state: State, mid: Midpoint, kept: Kept
             return f"{model.too_deep(int(pair['a']), partner(model, pair))} at rest; give a stiffer contact"
         kept.marks[mid.touched[k]] = True
         row = kept.rows[pair["row"]]
-        # sums are over a time of 1
+        # integrals are over a time of 1
         row[[MAX_FORCE, FORCE_TIME, FORCE_NOW]] += force
         row[[MAX_DEPTH, DEPTH_TIME, DEPTH_NOW]] = max(row[MAX_DEPTH], depth)
         row[[TIME, ACTS]] = 1.0
@@ -199,7 +200,7 @@ def _touch(model: Model, system: System, state: State, mid: Midpoint, kept: Kept
 
 
 def _stretched(model: Model, system: System, x: np.ndarray, r: np.ndarray) -> str | None:
-    """A reason where a joint is beyond its curve."""
+    """Reason where a joint is beyond its curve, or None."""
     from mdlgen.backends.lattice.kernels.entries import overstretched
 
     joint, strain = overstretched(system.points, system.joints, x, r)
@@ -207,7 +208,7 @@ def _stretched(model: Model, system: System, x: np.ndarray, r: np.ndarray) -> st
 
 
 def _outside(model: Model, x: np.ndarray) -> str | None:
-    """A reason where a body is outside of the bounds from which its contacts were chosen."""
+    """Reason where a body is outside of the bounds for which its contacts were chosen, or None."""
     pairs = model.pairs
     there = x[: len(pairs.low)]
     out = ((there < pairs.low) | (there > pairs.high)).any(axis=1)

@@ -1,4 +1,4 @@
-"""Whether a static balance stands, in how many directions it falls if not, and from which load on."""
+"""Stability of a static balance: the number of unstable directions, and the load at which it is lost."""
 
 from __future__ import annotations
 
@@ -12,8 +12,8 @@ from mdlgen.model.tables import Floats
 
 
 def falling(band: Floats, border: Floats, corner: Floats) -> int:
-    """Number of directions in which a balance falls that does not stand, by the signs of the pivots of what
-    the kernel `stands` leaves; 1 where they are not known."""
+    """Number of directions in which a balance is unstable, from the signs of the pivots of the stiffness that
+    the kernel `stands` returns; 1 where they are not known."""
     from scipy.sparse.linalg import splu
 
     try:
@@ -45,7 +45,7 @@ def whole(band: Floats, border: Floats, corner: Floats) -> Any:
 
 
 def reason(ways: int, begins: float) -> str:
-    """Why a balance that falls in so many directions is no result; it does above a part of the load."""
+    """Reason why a balance is no result: it is unstable in `ways` directions, above a part of the load."""
     which = "one direction" if ways == 1 else f"{ways} directions"
     return (
         f"the balance is unstable: it falls in {which}, above {100 * begins:.3g} % of the load; "
@@ -54,7 +54,7 @@ def reason(ways: int, begins: float) -> str:
 
 
 def begins(stable: Callable[[float], bool]) -> float:
-    """The part of the load above which no balance stands; `stable(level)`: one is found there, and does."""
+    """Part of the load above which no balance is stable; `stable(level)`: true if one is found and stable."""
     low, high = 0.0, 1.0
     for _ in range(STANDING_HALVINGS):
         level = 0.5 * (low + high)

@@ -1,1 +1,1 @@
-"""Scenes that are their own mirror image, solved by one half."""
+"""Scenes that are their own mirror image, of which one half is solved."""

@@ -18,14 +18,15 @@ from mdlgen.model.tables import BOX_BOX, Floats, Ints, Model, SheetPart
 
 
 def find(model: Model, system: System) -> Mirror | None:
-    """The plane, or None: there is none, or nothing touches. What is free keeps its momentum to round-off,
-    which one side alone would not. Scenes with air between sheets, measured friction, motors, limiters or
-    shafts are not halved, nor are those where a sheet sticks on a roller that the plane cuts, or with
-    Poisson's effect, which couples boxes on both sides of the plane, or with parts that turn about a pivot or
-    slide, or with stops.
+    """The plane, or None: there is none, or nothing touches. Without contacts a whole scene conserves its
+    momentum to round-off, which one side alone would not. These scenes are not halved, either: with air
+    between sheets, measured friction, motors, limiters or shafts; with a sheet that sticks on a roller which
+    the plane cuts; with Poisson's effect, which couples boxes on both sides of the plane; with parts that
+    turn about a pivot or slide, or with stops.
 
-    It goes through the middle of the sheets, between boxes, along one of their edges. Everything is compared:
-    bodies, what holds and drives them, contacts, loads, and the forces of the joints of a random state.
+    The plane goes through the middle of the sheets, between boxes, along one of their edges. Everything is
+    compared: bodies, their supports and drives, contacts, loads, and the forces of the joints of a random
+    state.
     """
     if not len(model.pairs) or not model.run.symmetry or len(model.corners) or model.gates or model.stopped:
         return None
@@ -97,8 +98,8 @@ def _grid(mirror: Mirror, sheet: SheetPart) -> Ints:
 
 
 def _sides(mirror: Mirror, model: Model) -> bool:
-    """Whether the free sides of boxes are those of their images. An axis along the normal shows its two ends
-    exchanged, which box axes, being right-handed, take for their own."""
+    """True if the free sides of boxes are those of their images. The mirror exchanges both ends of an axis
+    along the normal; box axes are right-handed, so that exchange is part of their numbering of sides."""
     exposed = model.bodies.exposed
     for sheet in model.sheets:
         own = slice(sheet.first, sheet.first + sheet.count)
@@ -108,7 +109,7 @@ def _sides(mirror: Mirror, model: Model) -> bool:
     return True
 
 
-# columns of Contacts that say which contact it is, not how it acts
+# columns of Contacts that identify a contact, and do not change its action
 _NO_LAW = ("entry", "part_a", "part_b", "name", "frictions")
 
 
@@ -134,7 +135,7 @@ def _contacts(model: Model, mirror: Mirror) -> Mirror | None:
     listed = table.kind[model.pairs.contact] != BOX_BOX
     a, b = model.pairs.a[listed], model.pairs.b[listed]
     across = (mirror.gone[a] != mirror.gone[b]) & ~own[a] & ~own[b]
-    # a part that keeps off the plane is out of reach of the boxes on the other side, which a run watches
+    # a part away from the plane is out of reach of the boxes on the other side, which a run checks
     clear = max(sheet.thickness for sheet in model.sheets)
     reached = {part.body for part in model.machine if not off(mirror, part) > clear}
     if not reached.isdisjoint([*a[across].tolist(), *b[across].tolist()]):
@@ -148,8 +149,9 @@ def _contacts(model: Model, mirror: Mirror) -> Mirror | None:
 
 
 def _senses(mirror: Mirror, model: Model, one: str, two: str) -> tuple[float, float, float]:
-    """Whether the image of a part of each row turns as that turns about its axis, 1, or the other way, -1;
-    and the image of the roller along whose surface friction counts."""
+    """Sense of rotation of the mirror image of each part of a row: 1 where it turns like the part about its
+    own axis, -1 where it turns the other way. The third value is for the roller whose surface defines the
+    direction of friction."""
     rollers = {roller.body: roller for roller in model.rollers}
     axes = {roller.name: roller.axis for roller in model.rollers}
     image = {roller.name: rollers[int(mirror.image[roller.body])].axis for roller in model.rollers}
@@ -161,7 +163,7 @@ def _senses(mirror: Mirror, model: Model, one: str, two: str) -> tuple[float, fl
 
 
 def _loads(model: Model, mirror: Mirror) -> bool:
-    """Whether what is loaded is seen as loaded alike, wherever it turns."""
+    """True if loads are the mirror images of each other, at any rotation of the bodies."""
     table, count = model.loads, len(mirror.image)
     force, moment, lever = np.zeros((count, 3)), np.zeros((count, 3)), np.zeros((count, 3, 3))
     np.add.at(force, table.body, table.force)
@@ -177,8 +179,9 @@ def _loads(model: Model, mirror: Mirror) -> bool:
 
 
 def _joints(model: Model, system: System, mirror: Mirror) -> bool:
-    """Whether joints are seen as joints: between the same bodies, as stiff, with the same forces in a random
-    state and in its image; and whether one that goes across joins a box to its own image."""
+    """True if joints are the mirror images of each other: between the same bodies, with the same stiffness,
+    and with the same forces in a random state and in its image. A joint across the plane must join a box to
+    its own image."""
     from mdlgen.backends.lattice.kernels.entries import joint_forces
 
     joints, image, count = system.joints, mirror.image, len(mirror.image)
@@ -212,12 +215,12 @@ def _joints(model: Model, system: System, mirror: Mirror) -> bool:
 
 
 def _shaken(model: Model) -> tuple[Floats, Floats, Floats, Floats]:
-    """Places, rotations (bodies + 1, 9) and velocities of a state near the start in which no two bodies move
-    alike; last the ground."""
+    """Places, rotations (bodies + 1, 9) and velocities of a state near the start in which all bodies move
+    differently; the last one is the ground."""
     table, count = model.bodies, len(model.bodies.name)
     x, r, u, w = (np.zeros((count + 1, n)) for n in (3, 9, 3, 3))
     free = np.where(table.fixed, 0.0, 1.0)[:, None]
-    # parts of multiples of squares are spread evenly, and follow no rule that boxes in rows follow
+    # fractional parts of multiples of squares are distributed evenly, without the regularity of rows of boxes
     shares = math.sqrt(2.0) * np.arange(1.0, 12 * count + 1.0) ** 2 % 1.0
     moved, turned, rate, spin = free * (4.0 * shares - 2.0).reshape(4, count, 3)
     x[:count] = table.position + MOVED * moved

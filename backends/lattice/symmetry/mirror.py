@@ -1,10 +1,10 @@
-"""Scenes that are their own mirror image: one half is solved, the other one is what a mirror shows of it.
+"""Scenes that are their own mirror image: one half is solved, and the other one follows by reflection.
 
-A machine for paper is often the same left and right of a plane along the path, and so is what happens in it.
-Boxes, rollers and contacts on one side are left out; a box at the plane is joined to its own image. Nothing
-is approximated: the equations of the half are those of the whole for every motion that is symmetric, and a
-scene that begins so stays so. What cannot appear is an asymmetry that grows out of round-off, such as
-buckling to a side; with `run.symmetry: false` both halves are solved.
+A machine for paper is often the same left and right of a plane along the path, and so is its motion. Boxes,
+rollers and contacts on one side are eliminated; a box at the plane is joined to its own image. Nothing is
+approximated: for a symmetric motion the equations of the half are those of the whole, and a scene that begins
+symmetric stays so. An asymmetry that grows out of round-off, such as buckling to one side, cannot appear.
+With `run.symmetry: false` both halves are solved.
 """
 
 from __future__ import annotations
@@ -24,33 +24,33 @@ from mdlgen.model.tables import Floats, Ints
 
 @dataclass(frozen=True)
 class Mirror:
-    """The plane normal . x = at, and what is seen of what in it."""
+    """The plane normal . x = at, and the mirror images of bodies and contacts in it."""
 
-    normal: Floats  # (3,)
-    at: float  # [mm]
-    image: Ints  # of each body; of one that stands in the plane, itself
-    signs: Floats  # axes of an image are those of the body seen, times these, (bodies, 3)
-    gone: NDArray[np.bool_]  # bodies that are left out, (bodies,)
-    boxes: NDArray[np.bool_]  # bodies that are boxes of sheets
-    rows: Ints  # row of the contacts that stands for each row: itself, or its image
-    times: Floats  # 2 for a row that is its own image, else 1
-    senses: Floats  # of what a row turns about the axes of its parts, and along: 1, or -1, (rows, 3)
-    apart: bool  # pairs of a box on one side and a part, or a sheet's box, on the other are left out
+    normal: Floats  # (3,).
+    at: float  # [mm].
+    image: Ints  # mirror image of each body; a body in the plane is its own image.
+    signs: Floats  # signs of the axes of an image relative to the reflected axes, (bodies, 3).
+    gone: NDArray[np.bool_]  # true for eliminated bodies, (bodies,).
+    boxes: NDArray[np.bool_]  # true for boxes of sheets.
+    rows: Ints  # row of the contacts that is solved for each row: itself, or its image.
+    times: Floats  # 2 for a row that is its own image, else 1.
+    senses: Floats  # 1 or -1: sense of rotation about the axes of the parts, and of slip, (rows, 3).
+    apart: bool  # true where pairs of a box and a part, or another sheet's box, across the plane are omitted.
 
     def seen(self, vectors: Floats) -> Floats:
-        """Vectors (..., 3) as the mirror shows them."""
+        """Mirror images of vectors (..., 3)."""
         return vectors - 2.0 * (vectors @ self.normal)[..., None] * self.normal
 
     def places(self, points: Floats) -> Floats:
-        """Points (..., 3) [mm] as the mirror shows them."""
+        """Mirror images of points (..., 3) [mm]."""
         return self.seen(points) + 2.0 * self.at * self.normal
 
     def axes(self, rotations: Floats) -> Floats:
-        """Axes (..., 3, 3), in columns, as the mirror shows them: no rotations."""
+        """Mirror images of axes (..., 3, 3), in columns; they are not rotations."""
         return self.seen(rotations.swapaxes(-1, -2)).swapaxes(-1, -2)
 
     def fill(self, x: Floats, r: Floats, u: Floats, w: Floats) -> None:
-        """Sets the bodies that are left out: places (..., bodies, 3), rotations (..., bodies, 9) of boxes,
+        """Sets the eliminated bodies: places (..., bodies, 3), rotations (..., bodies, 9) of boxes,
         velocities."""
         to = np.flatnonzero(self.gone)
         of = self.image[to]
@@ -62,12 +62,12 @@ class Mirror:
         r[..., to, :] = turned.reshape(whole.shape)
 
     def sums(self, rows: Floats) -> Floats:
-        """What adds up over the pairs of each row of the contacts, (..., rows), of both sides."""
+        """Sums over the pairs of each row of the contacts, (..., rows), of both sides."""
         return self.largest(rows * self.times)
 
     def acts(self, rows: Floats) -> Floats:
-        """What rows of contacts do, (..., rows, 5), of both sides: normal force, then the columns of
-        mechanics.turning. What turns against its image in one and the same row cancels out."""
+        """Forces of rows of contacts, (..., rows, 5), of both sides: normal force, then the columns of
+        mechanics.turning. Opposite rotations of a part and its image in the same row cancel out."""
         whole = rows[..., self.rows, :] * self.times[self.rows, None]
         image = (self.rows != np.arange(len(self.rows)))[:, None]
         own = np.where(self.times[:, None] > 1.0, 0.5 + 0.5 * self.senses, 1.0)
@@ -75,16 +75,16 @@ class Mirror:
         return whole
 
     def largest(self, rows: Floats) -> Floats:
-        """What holds for a row of the contacts, (..., rows), holds for its image."""
+        """Values of all rows of the contacts, (..., rows): an image has the value of its row."""
         return rows[..., self.rows]
 
     def passed(self, x: Floats, boxes: Ints) -> int:
-        """A box that has passed the plane, where it may meet parts that it has no pairs with; -1: none."""
+        """A box that has passed the plane, where it may meet parts with which it has no pairs; -1: none."""
         beyond = np.flatnonzero(x[boxes] @ self.normal > self.at) if self.apart else []
         return int(boxes[beyond[0]]) if len(beyond) else -1
 
     def touched(self, system: System, marks: NDArray[np.bool_]) -> int:
-        """How many pairs of the whole those of the half stand for that are marked."""
+        """Number of pairs of the whole scene to which the marked pairs of the half correspond."""
         own = self.image == np.arange(len(self.image))
         pairs = system.pairs[: system.search.first]
         alone = pairs["mark"][own[pairs["a"]] & own[pairs["b"]]]
@@ -92,7 +92,7 @@ class Mirror:
 
 
 def halve(system: System, mirror: Mirror) -> System:
-    """The side of a System that is not left out."""
+    """The side of a System that is solved."""
     gone = np.append(mirror.gone, False)
     own = np.append(mirror.image == np.arange(len(mirror.image)), False)
     bodies = system.bodies.copy()
@@ -100,7 +100,7 @@ def halve(system: System, mirror: Mirror) -> System:
         bodies[name][gone] = -1
     for name in ("axis", "clutch", "swings"):
         bodies[name][gone] = 0
-    # a roller, or a pressed plate, in the plane: half of it, pushed by what is on one side
+    # a roller, or a pressed plate, in the plane: half of it, loaded by one side alone
     bodies["press"][own] *= 0.5
     bodies["clutch"][own, 1] *= 0.5
     border = 0
@@ -122,7 +122,7 @@ def halve(system: System, mirror: Mirror) -> System:
     images["normal"], images["at"] = mirror.normal, mirror.at
     a, b = system.pairs["a"], system.pairs["b"]
     near = ~gone[a] & ~gone[b]
-    near[system.search.first :] = True  # room, see search
+    near[system.search.first :] = True  # unused rows, see search
     pairs = system.pairs[near].copy()
     pairs["k"][(own[a] & own[b])[near]] *= 0.5
     bristles, held = halved(system.bristles, system.held, pairs, near, own)

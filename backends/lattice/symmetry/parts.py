@@ -1,4 +1,4 @@
-"""Parts of the machine as a mirror shows them, by kind. A part of any other kind has no image."""
+"""Mirror images of parts of the machine, by kind. A part of any other kind has no image."""
 
 from __future__ import annotations
 
@@ -15,15 +15,15 @@ from mdlgen.model.tables import ArmPart, GuidePart, MachinePart, Model, PlanePar
 
 
 class _Kind(NamedTuple):
-    """`image(mirror, model, one, two)`: whether one part, whose place is that of the other one in the mirror,
-    is seen as that; `half(mirror, part)`: how far it reaches from its centre along the normal [mm]."""
+    """`image(mirror, model, one, two)`: true if one part, whose place is the image of the other one's, is its
+    mirror image; `half(mirror, part)`: extent from its centre along the normal [mm]."""
 
     image: Callable[[Mirror, Model, Any, Any], bool]
     half: Callable[[Mirror, Any], float]
 
 
 def seen_as(mirror: Mirror, model: Model, one: MachinePart, two: MachinePart) -> bool:
-    """Whether one part of the machine is seen as the other one."""
+    """True if one part of the machine is the mirror image of the other one."""
     if type(one) is not type(two) or type(one) not in _KINDS:
         return False
     size = max(1.0, float(np.abs(one.center).max()))
@@ -33,12 +33,12 @@ def seen_as(mirror: Mirror, model: Model, one: MachinePart, two: MachinePart) ->
 
 
 def off(mirror: Mirror, part: MachinePart) -> float:
-    """How far a part keeps off the plane [mm]."""
+    """Distance of a part from the plane [mm]."""
     return abs(float(mirror.normal @ part.center) - mirror.at) - _KINDS[type(part)].half(mirror, part)
 
 
 def same(a: Any, b: Any) -> bool:
-    """Equal but for round-off."""
+    """True if equal within round-off."""
     if isinstance(a, (float, np.ndarray)) and isinstance(b, (float, np.ndarray)):
         a, b = np.asarray(a), np.asarray(b)
         if a.shape != b.shape:
@@ -60,7 +60,7 @@ def _roller(mirror: Mirror, model: Model, one: RollerPart, two: RollerPart) -> b
 
 
 def _turning(part: RollerPart, way: float, mirror: Mirror | None) -> tuple[Any, ...]:
-    """What a roller does, in the sense of an axis that is turned by `way`."""
+    """Properties of a roller, in the sense of an axis with the sign `way`."""
     clutch = part.one_way and replace(part.one_way, direction=int(way * part.one_way.direction))
     press = part.press
     if press is not None and mirror is not None:
@@ -81,7 +81,7 @@ def _turning(part: RollerPart, way: float, mirror: Mirror | None) -> tuple[Any, 
 
 
 def _seen_arm(arm: ArmPart, way: float) -> ArmPart:
-    """An arm with its torque, angle and speed in the sense of an axis that is turned by `way`."""
+    """An arm with its torque, angle and speed in the sense of an axis with the sign `way`."""
     return replace(arm, torque=way * arm.torque, angle=way * arm.angle, speed=way * arm.speed)
 
 
@@ -100,12 +100,12 @@ def _plane(mirror: Mirror, model: Model, one: PlanePart, two: PlanePart) -> bool
 
 
 def _half_plane(mirror: Mirror, plane: PlanePart) -> float:
-    """As if it went across: a plane is wide."""
+    """Infinity: a plane is wide, so it counts as crossing the mirror plane."""
     return math.inf
 
 
 def _guide(mirror: Mirror, model: Model, one: GuidePart, two: GuidePart) -> bool:
-    """The outline of a guide lies in the mirror, its width goes across."""
+    """True if the outline of a guide is parallel to the mirror plane, and its width crosses it."""
     flat = np.abs(one.axes[:, :2].T @ mirror.normal).max() < SAME
     return bool(flat) and _values_of(one, {}) == _values_of(two, {})
 
@@ -118,14 +118,14 @@ _PLACE = ("name", "body", "center")
 
 
 def _values_of(part: Any, instead: dict[str, Any]) -> tuple[Any, ...]:
-    """All fields of a part but its name and its place, rounded to be compared."""
+    """All fields of a part except its name and its place, rounded for comparison."""
     values = (instead.get(f.name, getattr(part, f.name)) for f in fields(part) if f.name not in _PLACE)
     return tuple(_rounded(v) for v in values)
 
 
 def _rounded(value: Any) -> Any:
-    """A value that is equal to others but for round-off; what is not a number, as a sector has that goes by
-    its roller, is equal too."""
+    """A value rounded so that values within round-off are equal. Nan, as in a sector that uses the value of
+    its roller, equals nan."""
     if isinstance(value, np.ndarray):
         most = float(np.nanmax(np.abs(value), initial=0.0)) or 1.0
         return (_rounded(most), *(_rounded(v) for v in (np.round(value / most, 9) + 0.0).ravel().tolist()))

@@ -11,7 +11,7 @@ from mdlgen.backends.motionsolve.reader.parse import children
 
 
 class Index:
-    """What stands in the Model; an id or a name that two of a kind have raises SpecError with file:line."""
+    """Entities of the Model; a duplicate id or name within a kind raises SpecError with file:line."""
 
     def __init__(self, model: etree._Element, file: str):
         self._kinds: dict[str, dict[int, Entity]] = {}
@@ -26,7 +26,7 @@ class Index:
                 raise entity.wrong(f"id {entity.id()} is taken by {kind[entity.id()].name}")
 
     def of_kind(self, kind: str) -> Iterator[Entity]:
-        """In the order of the deck."""
+        """Entities of a kind, in the order of the deck."""
         yield from self._kinds.get(kind, {}).values()
 
     def get(self, user: Entity, attribute: str, kind: str) -> Entity:

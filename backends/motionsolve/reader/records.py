@@ -1,4 +1,4 @@
-"""What the list of values says of each kind of entity. Units: mm, N, kg, s, rad."""
+"""Records of each kind of entity in the list of values. Units: mm, N, kg, s, rad."""
 
 from __future__ import annotations
 
@@ -285,13 +285,13 @@ def output(deck: Deck, entity: Entity) -> dict[str, Any] | None:
 
 
 def _of_contacts(entity: Entity) -> bool:
-    """Whether a request is of what contacts do."""
+    """True if a request is for the forces of contacts."""
     return entity.word(f"expr{_SIX[0]}", "").startswith("CONTACT(")
 
 
 def contact_output(deck: Deck, entity: Entity) -> list[list[tuple[str, str, str, str]]] | None:
-    """Of each component the contacts that are summed: name, side, component and the frame that it is along;
-    None for another request."""
+    """Contacts that are summed in each component: name, side, component and its frame; None for another
+    request."""
     if entity.word("type") != "EXPRESSION" or not _of_contacts(entity):
         return None
 

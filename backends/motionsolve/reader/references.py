@@ -53,7 +53,7 @@ def dangling(root: etree._Element) -> list[Problem]:
 
 
 def _of(element: etree._Element, known: dict[str, dict[int, etree._Element]]) -> Iterator[str]:
-    """What is wrong with the ids that one element uses."""
+    """Errors in the ids that one element uses."""
     for attribute, text in element.attrib.items():
         attribute, text = str(attribute), str(text)
         kind = USES.get(attribute)

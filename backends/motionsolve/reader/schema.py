@@ -1,4 +1,4 @@
-"""Whether a deck is one: elements and attributes by the schema, ids by kind."""
+"""Validation of a deck: elements and attributes by the schema, ids by kind."""
 
 from __future__ import annotations
 
@@ -19,10 +19,10 @@ def schema() -> etree.RelaxNG:
 
 
 def validate(text: str, file: str = "<deck>") -> list[str]:
-    """What is wrong in a deck, as lines `file:line: what`; empty where nothing is.
+    """Errors of a deck, as lines `file:line: message`; empty where it has none.
 
-    Looks at elements, attributes and their values by the schema, that no id of a kind is taken twice and
-    none that is used is missing.
+    Checks elements, attributes and their values by the schema; that ids are unique within a kind; and that no
+    id that is used is missing.
     """
     try:
         found = root(text, file)

@@ -12,7 +12,7 @@ from mdlgen.model.tables import Model
 
 
 class Labelled(Protocol):
-    """What every row of an entity has."""
+    """Attributes that every row of an entity has."""
 
     @property
     def name(self) -> str: ...

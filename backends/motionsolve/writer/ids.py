@@ -7,10 +7,10 @@ GLOBAL_FRAME = 1  # the first marker
 
 
 def body_id(body: int) -> int:
-    """Of a body of the Model, or of GROUND (-1)."""
+    """Id of a body of the Model, or of GROUND (-1)."""
     return body + 2
 
 
 def graphic_id(body: int) -> int:
-    """Of the graphic of a body of the Model."""
+    """Id of the graphic of a body of the Model."""
     return body + 1

@@ -1,4 +1,4 @@
-"""What the solver records, as the text's outputs have it."""
+"""Requests for the quantities that the solver records, as in the outputs of the MDL file."""
 
 from __future__ import annotations
 
@@ -23,8 +23,8 @@ def _mean(quantity: str, markers: list[int]) -> str:
 
 
 def add_forces(deck: Deck, model: Model) -> None:
-    """What the contacts of two parts do to the second one, summed over their pairs: force, and torque about
-    its centre of mass."""
+    """Adds requests for the contact forces of two parts on the second one, summed over their pairs: force,
+    and torque about its centre of mass."""
     pairs, table = model.pairs, model.contacts
     sides: dict[int, list[tuple[int, int]]] = {row: [] for row in recorded(model)}
     bodies = {marker.id: marker.body for marker in deck.markers}

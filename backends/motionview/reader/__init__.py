@@ -21,7 +21,7 @@ def read(text: str, file: str = "<text>", folder: Path | None = None) -> Reading
 
 
 def lint(text: str, file: str = "<text>") -> Report:
-    """What is wrong or doubtful in a text, each with its place."""
+    """Errors and doubtful places in an MDL file, each with its place."""
     return Reading(text, file).report
 
 

@@ -96,12 +96,12 @@ RANGES = _ranges()
 
 
 def known(statement: Statement) -> bool:
-    """Whether the statement is documented or was seen in a real file."""
+    """True if the statement is documented or was seen in a real file."""
     return statement.key in RANGES
 
 
 def meant(statement: Statement) -> str:
-    """What an unknown statement was likely meant to be."""
+    """Hint at the statement that was probably meant by an unknown one."""
     hint = _MEANT.get(statement.key)
     return f"; meant is *{hint}" if hint else ""
 

@@ -1,6 +1,7 @@
-"""One value of a read text changed: what depends on it is found again, the rest is left as it is.
+"""Changes one value of an MDL file that was read: values that depend on it are evaluated again, others are
+not.
 
-What depends on what is taken from the words of the statements, which is more than what was used: a thing
+Dependences follow from the words of the statements, which is more than the values that were used. An entity
 whose statements do not name another one, directly or through others, cannot depend on it.
 """
 

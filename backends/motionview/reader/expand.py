@@ -18,7 +18,7 @@ from mdlgen.backends.motionview.reader.things import BUILT_INS, CLASSES
 from mdlgen.backends.motionview.reader.world import World
 from mdlgen.errors import SpecError
 
-# After expansion, as a number and in times the statements of the text: definitions in definitions multiply.
+# Most statements after expansion, as a number and relative to those of the file: nested definitions multiply.
 MOST_STATEMENTS = 100_000
 MOST_TIMES = 20
 STANDARD = ("sys_misc", "Solver_Filename", "DS_MotionSolve_Simopts", "SolverMode")
@@ -239,10 +239,10 @@ class Expansion:
             settings.sort(key=lambda s: s.rank)
 
     def find(self, scope: Scope | None, path: str) -> tuple[Slot, list[str]] | None:
-        """The slot that a path is about, with what is left of the path; conditions are not asked."""
+        """The slot to which a path leads, with the rest of the path; conditions are not evaluated."""
         if scope is not None and path.isidentifier() and path.lower() not in _RELATIVE:
             own = scope.slots.get(path)
-            if own is not None:  # as nearly all
+            if own is not None:  # the most frequent case
                 return own, []
         words = [w.strip().replace(" ", "") for w in path.split(".") if w.strip()]
         if words and words[0].lower() in AT_MODEL and words[0] not in self.world.root.slots:
@@ -348,7 +348,7 @@ _KINDS = {name.lower(): name for name in (*CLASSES, "System", "Analysis", "DataS
 
 @lru_cache(256)
 def _kind(name: str) -> tuple[str, bool]:
-    """What a statement makes, and whether it makes two."""
+    """Kind of entity that a statement makes, and true if it makes a pair."""
     pair = name.lower().endswith("pair")
     name = name[:-4] if pair else name
     return _KINDS.get(name.lower(), name), pair

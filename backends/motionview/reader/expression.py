@@ -48,7 +48,7 @@ _ESCAPES = {"n": "\n", "t": "\t"}
 
 
 class Compiled(NamedTuple):
-    """What an expression became."""
+    """A compiled expression."""
 
     run: Run
     depth: int

@@ -1,4 +1,4 @@
-"""Files that a text includes: read where they lie beside it, in its folder or below, and nowhere else."""
+"""Files that an MDL file includes: they are read only from its own folder or below."""
 
 from __future__ import annotations
 

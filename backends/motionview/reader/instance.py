@@ -32,7 +32,7 @@ class Attached(NamedTuple):
 
 
 def attachments(expansion: Expansion, path: str) -> list[Attached]:
-    """Of the instance whose things have names that begin with `path` (`sys_note.`)."""
+    """Attachments of the instance whose entities have names that begin with `path` (`sys_note.`)."""
     found = []
     for scope in _scopes(expansion, path):
         for name, parameter in scope.parameters.items():

@@ -1,4 +1,4 @@
-"""What is wrong or doubtful in a text: numbers of arguments, names, expressions, traps."""
+"""Lints of an MDL file: numbers of arguments, names, expressions, and known pitfalls."""
 
 from __future__ import annotations
 

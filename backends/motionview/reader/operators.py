@@ -55,7 +55,8 @@ def arithmetic(sign: str, a: Any, b: Any, shift: int) -> Any:
 
 
 def one(value: Any) -> Any:
-    """Of a pair whose two are alike, that value: `pair_of_joints.isbush` is one answer for both."""
+    """The common value of a pair whose two values are equal: `pair_of_joints.isbush` is one answer for
+    both."""
     if value.__class__ is Pair and isinstance(value.l, (bool, float, str)) and value.l == value.r:
         return value.l
     return value
@@ -73,7 +74,7 @@ def shown(value: Any) -> str:
 
 
 def named(value: Any) -> str:
-    """What kind of value this is, for messages."""
+    """Kind of a value, for messages."""
     if isinstance(value, (bool, float)):
         return f"the number {shown(value)}"
     if isinstance(value, str):

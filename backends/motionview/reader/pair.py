@@ -19,7 +19,7 @@ class Pair:
 
 
 class Unmade:
-    """What the standard include or a missing one makes; nothing is known of it."""
+    """An entity of the standard include, or of a missing one; none of its values are known."""
 
     def __init__(self, name: str, why: str):
         self.name = name

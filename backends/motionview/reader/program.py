@@ -148,7 +148,7 @@ _CLOSES = {
 
 _OPENING = {"if": "if", "begincontext": "context", "beginmdl": "mdl"}
 _INCLUDING = ("include", "definitioninclude", "standardinclude", "loadpreferencefile")
-# What nests others or is about the file as a whole; the definitions too.
+# Statements that nest others or concern the file as a whole; definitions, too.
 _FRAME = {*_CLOSING, *_OPENING, *_INCLUDING, "setcurrentsolvermode", "setactiveanalysis"}
 
 

@@ -53,7 +53,7 @@ class Reading:
         return Changes(self.expansion)
 
     def attachments(self, instance: str) -> list[Attached]:
-        """What an instance (`sys_note.`) has for the attachments of its definition."""
+        """Entities that an instance (`sys_note.`) has for the attachments of its definition."""
         return attachments(self.expansion, instance)
 
     def acting_on(self, instance: str) -> list[Statement]:
@@ -65,7 +65,7 @@ class Reading:
         return list(remainder(self.expansion))
 
     def instances(self, definition: str) -> list[str]:
-        """What the names of things in each instance of a system definition begin with (`sys_note.`)."""
+        """Prefixes of the names of entities in each instance of a system definition (`sys_note.`)."""
         world = self.world
         return [
             scope.path

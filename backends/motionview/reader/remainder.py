@@ -17,7 +17,7 @@ _FRAMES = {
     *("beginmdl", "endmdl", "enddefine", "begincontext", "endcontext", "definedataset", "definetemplate"),
     *("standardinclude", "setcurrentsolvermode"),
 }
-# What is for panels, pictures and ids.
+# Statements for panels, graphics and ids.
 _DECORATION = {
     *("form", "defineform", "setrowscols", "mergecells", "columnlabel", "columnwidth", "setcell", "setnote"),
     *("setgraphicattributes", "setcolormaterialreference", "setentityid", "loadpreferencefile"),

@@ -1,4 +1,4 @@
-"""What was found in a text: findings with a place, and the errors that stop an evaluation."""
+"""Findings in an MDL file, each with its place, and the errors that stop an evaluation."""
 
 from __future__ import annotations
 

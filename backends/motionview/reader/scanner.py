@@ -1,4 +1,5 @@
-"""Text -> statements. What does not read is reported and skipped, up to the next line with a statement."""
+"""Splits a text into statements. Unreadable parts are reported and skipped, up to the next line with a
+statement."""
 
 from __future__ import annotations
 

@@ -95,14 +95,15 @@ class Scope:
         return found
 
     def value_of(self, name: str) -> Any:
-        """What a name means here: own things, arguments, then those of the scopes around."""
+        """Value of a name in this scope: its own entities, its arguments, then those of the enclosing
+        scopes."""
         if name in self.known:
             return self.known[name]
         value = self.known[name] = self._find(name)
         return value
 
     def member(self, name: str) -> Any:
-        """What a name means in this scope alone, or None."""
+        """Value of a name in this scope alone, or None."""
         slot = self.slots.get(name)
         if slot is not None:
             found = self.world.thing(slot)

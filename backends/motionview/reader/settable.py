@@ -1,4 +1,4 @@
-"""Which Set statements the values act on, by the kind of thing and the part of it that they set."""
+"""Set statements that change values, by the kind of entity and the property that they set."""
 
 from __future__ import annotations
 
@@ -45,7 +45,7 @@ ACTED: dict[str, Parts] = {
     "setfilename": _VALUES,
     "setval": _VALUES,
 }
-# What is usual and that no value shows: the size of a force between two bodies.
+# Frequent statements that no value shows: the magnitude of a force between two bodies.
 NOT_SHOWN = {("ActionReactionForce", "setforce")}
 # Properties of *Set that change no value, as far as files and their exported decks show; and for which value.
 _HARMLESS = {"usecm": "true", "hide_in_post": "", "mesh_coarsening_level": ""}
@@ -53,7 +53,7 @@ _CELL = re.compile(r"\w+\[\d+\]\Z")
 
 
 def acts(kind: str, key: str, part: str) -> bool:
-    """Whether the values act on a statement `key` about a part of a thing."""
+    """True if a statement `key` about a property of an entity changes values."""
     parts = ACTED.get(key, {}).get(kind)
     if parts is None:
         return False
@@ -61,6 +61,6 @@ def acts(kind: str, key: str, part: str) -> bool:
 
 
 def harmless(statement: Statement, part: str) -> bool:
-    """Whether a *Set is of a property that changes no value."""
+    """True if a *Set is of a property that changes no value."""
     due = _HARMLESS.get(part) if statement.key == "set" else None
     return due is not None and due in ("", statement.arg(1).lower())

@@ -1,4 +1,4 @@
-"""What the standard include makes and a text may set: gravity and units, in the data sets of sys_misc.
+"""Entities of the standard include that a file may set: gravity and units, in the data sets of sys_misc.
 
 Names: the page of *SetOption has them all in model.sys_misc; the page on implicit entities has DS_Gravity and
 DS_Units at the model. Values: those of two exported decks whose models set none.

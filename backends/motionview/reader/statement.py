@@ -40,7 +40,7 @@ class Statement:
         self.body = ""  # free text of a template
 
     def place(self, arg: int | None = None, shift: int = 0) -> Place:
-        """Of the statement, or of a character of an argument."""
+        """Place of the statement, or of a character of an argument."""
         if arg is None or not 0 <= arg < len(self.args):
             return self.source.place(self.start)
         begin = Split(self.source.text, self.opening).starts[arg]

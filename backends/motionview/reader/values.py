@@ -39,7 +39,7 @@ _MORE = ("velocities", "datasets", "members", "labels", "model", "commands", "st
 
 
 def values(world: World, notes: Notes) -> dict[str, dict[str, Any]]:
-    """What could be evaluated; what could not is reported to `notes` and left out."""
+    """Records of all entities that could be evaluated; others are reported to `notes` and omitted."""
     found = values_of(world.things(), world, notes)
     begin = world.program.begin
     if begin is not None:
@@ -148,6 +148,6 @@ class _Collector:
 
 
 def _is_set(thing: Thing) -> bool:
-    """Whether a text that was read sets a value of the standard include."""
+    """True if a file that was read sets a value of the standard include."""
     settings = (thing.declaration.slot.settings or {}).values()
     return any(s.statement.source.file != FILE for found in settings for s in found)

@@ -30,7 +30,7 @@ _MISSING = object()
 
 
 class Makers(Protocol):
-    """What makes things of declarations; see `things`."""
+    """Factory of entities from declarations; see `things`."""
 
     def made(self, world: World, declaration: Declaration) -> Any:
         """The Thing, or the Pair of two, that a declaration makes."""
@@ -41,7 +41,7 @@ class Makers(Protocol):
         ...
 
     def members(self, found: Any) -> list[Thing]:
-        """The one, or the two of a pair."""
+        """The entity itself, or the two of a pair."""
         ...
 
 
@@ -194,7 +194,7 @@ class World(Demand):
         return None
 
     def holds(self, guard: Guard | None, scope: Scope) -> bool:
-        """Whether all conditions around a statement are as wanted; one without a value counts as false."""
+        """True if all conditions around a statement hold; one without a value counts as false."""
         while guard is not None:
             known = scope.conditions.get(id(guard.condition))
             if known is None:
@@ -223,7 +223,7 @@ class World(Demand):
             raise
 
     def alive(self, scope: Scope | None) -> bool:
-        """Whether the instance that a scope is stands under conditions that hold."""
+        """True if the conditions around the instance of a scope hold."""
         while scope is not None and scope.declaration is not None:
             declaration = scope.declaration
             if self.declaration(declaration.slot) is not declaration:
@@ -235,7 +235,7 @@ class World(Demand):
         return True
 
     def argument(self, scope: Scope, name: str) -> Any:
-        """What an instance was given for an argument of its definition, else the default."""
+        """Value that an instance was given for an argument of its definition, else the default."""
         return self.demand(self.system(scope), "argument " + name)
 
     def system(self, scope: Scope) -> Any:
@@ -243,7 +243,7 @@ class World(Demand):
         return self._makers.system_of(self, scope)
 
     def built_in(self, name: str) -> Any:
-        """What the standard include makes."""
+        """Entity of the standard include, or None."""
         found = self.built_ins.get(name)
         if found is None and name.lower() in AT_MODEL and (holder := self.built_ins.get(HOLDER)) is not None:
             return holder.inner.member(name.lower()) if hasattr(holder, "inner") else holder

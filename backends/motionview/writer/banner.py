@@ -76,7 +76,7 @@ def sheet_lines(model: Model, scene: SceneView) -> list[str]:
 
 
 def curve_lines(model: Model) -> list[str]:
-    """What a text does with measured curves."""
+    """Lines that describe the measured curves of an MDL file."""
     curves = model.curves
     if not len(curves):
         return []

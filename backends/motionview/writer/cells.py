@@ -68,7 +68,8 @@ def _lengths(sheet: SheetPart, cell: CellView) -> Lengths:
 
 
 def rough_boxes(sheet: SheetPart) -> list[str]:
-    """Reference to the friction of each box in times that of the contact; none where there are no zones."""
+    """Reference to the friction of each box relative to that of the contact; none where there are no
+    zones."""
     if not sheet.zones:
         return []
     classes, of = box_classes(sheet)

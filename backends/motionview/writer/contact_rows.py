@@ -27,7 +27,7 @@ class Pair(NamedTuple):
     graphics_2: list[str]
     friction: str  # ON or OFF
     data_set: str
-    rough: str = ""  # friction of its boxes in times that of the contact, where that is not 1
+    rough: str = ""  # friction of its boxes relative to that of the contact, where that is not 1
     rougher: float = 1.0  # and its number
     stiff: str = ""  # the same of the stiffness
     stiffer: float = 1.0
@@ -46,7 +46,7 @@ class LawView(NamedTuple):
 
 
 class ForceView(NamedTuple):
-    """What the contacts of two parts do to the second one, recorded as a sum over them."""
+    """Force of the contacts of two parts on the second one, recorded as a sum over them."""
 
     name: str
     label: str

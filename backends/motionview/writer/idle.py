@@ -1,4 +1,4 @@
-"""Which values of a data set the text shows but does not use: they are written NO_EDIT, with the reason.
+"""Values of a data set that an MDL file shows but does not use: they are written NO_EDIT, with the reason.
 
 A value that a user can edit and that changes nothing would be worse than one that cannot be edited.
 """
@@ -13,7 +13,7 @@ from mdlgen.formulas import names
 from mdlgen.model.parameters.names import OF_USER
 from mdlgen.model.tables import Model
 
-# What gives contacts their numbers.
+# Sources of the numbers of contacts.
 COMMAND, STATEMENT, SCRIPT = "solver commands", "SetContact", "the companion script"
 _FRICTION = ("mu_s", "mu_d", "v_s", "v_d")
 _DAMPING = ("zeta", "zeta_ty", "tau", "tau_md", "tau_cd", "eta", "eta_md", "eta_cd", "f")
@@ -76,7 +76,7 @@ def used_by(model: Model, texts: Iterable[str]) -> set[str]:
 
 
 def _rims(model: Model, numbers_by: str, kept: Sequence[int]) -> dict[tuple[str, str], str]:
-    """What sectors of rims have that no statement uses."""
+    """Values of sectors of rims that no statement uses, with the reason."""
     table, found = model.contacts, {}
     for roller in model.rollers:
         if roller.rim is None:

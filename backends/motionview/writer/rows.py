@@ -1,6 +1,6 @@
 """Plain rows for the templates: names, labels and numbers, already in MotionView's units.
 
-What can be a formula is not here: it stands in the templates. Here is what rows of several kinds have.
+Formulas are in the templates, not here. This module has the rows that several kinds share.
 """
 
 from __future__ import annotations
@@ -20,7 +20,7 @@ class Value(NamedTuple):
 
     @property
     def said(self) -> str:
-        """What the text sets it to."""
+        """Formula or number to which the file sets it."""
         return self.formula or self.number
 
 

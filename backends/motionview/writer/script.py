@@ -16,7 +16,7 @@ from mdlgen.model.tables import Ints, Model
 OPTIONAL = (
     "the numbers of its contacts, which the solver commands of the text give at the start of a run anyway"
 )
-# What MotionView takes where a text says nothing [mm/s].
+# Default of MotionView where a file does not set it [mm/s].
 DEFAULT_SMOOTHING = 1.0
 
 
@@ -106,5 +106,5 @@ def _said(value: Value, holder: str, times: float) -> str:
 
 
 def follows(contacts: list[Numbers]) -> bool:
-    """Whether some number follows a value of the model."""
+    """True if some number follows a value of the model."""
     return any(text.startswith("(") for contact in contacts for _, text in contact.numbers)

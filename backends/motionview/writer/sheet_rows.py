@@ -158,10 +158,10 @@ class SheetView:
     in_plane: bool
     twist: bool
     plate: bool
-    ratio: str  # shear modulus over the mean of the moduli, and so for twist, where they are not given
-    damping: str  # inertia, paper or time
-    own_times: bool  # MD and CD have damping times of their own
-    stiff: bool  # anything uses the sheet's stiffness
+    ratio: str  # shear modulus over the mean of the moduli, and the same for twist, where they are not given.
+    damping: str  # inertia, paper or time.
+    own_times: bool  # true where MD and CD have damping times of their own.
+    stiff: bool  # true where some value uses the sheet's stiffness.
     graded: tuple[bool, bool]
     grids: list[GridView]
     zones: list[ZoneView]
@@ -205,7 +205,7 @@ class SupportView:
 
 
 class LoadPart(NamedTuple):
-    """What of a load acts on one box: where, and its three components."""
+    """Part of a load on one box: its place, and its three components."""
 
     name: str
     label: str

@@ -19,18 +19,18 @@ def _fifteen(value: float) -> float:
 
 
 def factor(dimension: Sequence[float]) -> float:
-    """What a value of a dimension in internal units (mm, g, ms, rad) is multiplied by in a formula, where the
-    units are mm, N, s, rad and so N s^2/mm for a mass."""
+    """Factor from internal units (mm, g, ms, rad) to those of a formula, for a value of a dimension. Formulas
+    use mm, N, s, rad, and so N s^2/mm for a mass."""
     return 1e-6 ** dimension[1] * 1e-3 ** dimension[2]
 
 
 def in_kg(dimension: Sequence[float]) -> bool:
-    """Whether a text has what is of this dimension by kg: masses, densities, inertias."""
+    """True if an MDL file has values of this dimension in kg: masses, densities, inertias."""
     return dimension[1] == 1.0 and dimension[2] == 0.0
 
 
 def in_degrees(dimension: Sequence[float]) -> bool:
-    """Whether a text has what is of this dimension in degrees."""
+    """True if an MDL file has values of this dimension in degrees."""
     return same(dimension, (0.0, 0.0, 0.0, 1.0))
 
 
@@ -45,7 +45,7 @@ def mdl_value(value: float, unit: str) -> float:
     return _fifteen(value / round(1 / scale) if scale < 1.0 else value * round(scale))
 
 
-# What a label names as the unit where the label has none yet.
+# Units that are added to labels without a unit.
 SHOWN = {"mm": "mm", "g": "kg", "ms": "s", "mm/ms": "mm/s", "mm/ms^2": "mm/s2", "N/mm": "N/mm"}
 
 

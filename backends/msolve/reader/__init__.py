@@ -25,12 +25,12 @@ class Reading:
 
     @property
     def same_program(self) -> bool:
-        """Whether all but the values is as mdlgen writes it."""
+        """True if all except the values is as mdlgen writes it."""
         return self._script.same_program
 
     @cached_property
     def made(self) -> Made:
-        """What the program makes of the values, object by object."""
+        """Objects that the program makes from the values."""
         return made(self._script, self._file, self.most)
 
     @cached_property

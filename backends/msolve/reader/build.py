@@ -1,4 +1,4 @@
-"""What the program of the template makes of some values, in the stand-in."""
+"""Executes the program of the template with some values, in the stand-in for msolve."""
 
 from __future__ import annotations
 
@@ -22,8 +22,9 @@ class Made(NamedTuple):
 
 
 def made(script: Script, file: str, most: int = MOST) -> Made:
-    """Raises SpecError where the values are not such as the program takes. Of the file only the values are
-    used, which are literals: what runs is the program of mdlgen's own template, up to the simulation."""
+    """Objects of a script. Raises SpecError where the program does not accept the values. Only the values of
+    the file are used, which are literals. The program that is executed is mdlgen's own template, up to the
+    simulation."""
     own, things = names(most)
     own |= script.values
     own["__name__"] = "script"

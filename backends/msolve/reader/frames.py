@@ -1,4 +1,4 @@
-"""What is asked of one object of a script: its name, where a marker is, and on what."""
+"""Properties of one object of a script: its name, the place of a marker, and its body."""
 
 from __future__ import annotations
 

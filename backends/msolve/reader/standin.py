@@ -115,7 +115,7 @@ _KINDS: dict[str, Callable[[Any], bool]] = {
 
 
 def fits(value: Any, kind: str) -> bool:
-    """Whether a value is of a kind of the table of forms."""
+    """True if a value is of a kind of the table of forms."""
     if kind in KNOWN:
         return _of(value, kind)
     if kind in _KINDS:
@@ -139,7 +139,7 @@ def _simulate(self: Thing, **given: Any) -> None:
 
 
 def names(most: int) -> tuple[dict[str, Any], list[Thing]]:
-    """What `from msolve import *` brings, and the list that all objects go into, at most so many."""
+    """Names of `from msolve import *`, and the list to which all objects are added, at most `most`."""
 
     class Bounded(list[Thing]):
         def append(self, item: Thing) -> None:

@@ -24,7 +24,7 @@ _SIX = ("f2", "f3", "f4", "f6", "f7", "f8")
 
 
 class Objects:
-    """What was made, by class and by id; a name that two of a kind have raises SpecError."""
+    """Objects of a script, by class and by id; a duplicate name within a kind raises SpecError."""
 
     def __init__(self, made: Made, file: str):
         self._things = made.things
@@ -37,7 +37,7 @@ class Objects:
                 yield label(thing), thing
 
     def one(self, kind: str) -> dict[str, Any]:
-        """What was given to the only object of a class; nothing where there is none."""
+        """Arguments of the only object of a class; empty where there is none."""
         return next((thing.given for _, thing in self.of(kind)), {})
 
     def by_id(self, number: int, kind: str) -> str:
@@ -49,7 +49,7 @@ class Objects:
         return f"{kind} {number}"
 
     def put(self, listed: dict[str, Any], name: str, value: Any) -> None:
-        """Files a record under its name."""
+        """Stores a record under its name."""
         if listed.setdefault(name, value) is not value:
             raise SpecError(f"{name} is there twice", place=Place(self._file, 1, 1))
 

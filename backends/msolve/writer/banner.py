@@ -1,4 +1,4 @@
-"""What stands at the head of a script: how it is run, what it leaves to MotionSolve, what is left out."""
+"""Head of a script: how to run it, what MotionSolve computes itself, and which features are omitted."""
 
 from __future__ import annotations
 

@@ -58,7 +58,7 @@ def _law(model: Model, row: int, rough: float, met: Meeting) -> Table:
 
 
 class _Shapes:
-    """What contacts act on, by body."""
+    """Graphics on which contacts act, by body."""
 
     def __init__(self, model: Model):
         self.model = model

@@ -54,7 +54,7 @@ def sheets(model: Model) -> tuple[Table, Table]:
 
 
 def _even(model: Model, sheet: SheetPart) -> bool:
-    """Whether the sheet is flat, all its boxes are alike, and its lines are evenly spaced."""
+    """True if the sheet is flat, all its boxes are alike, and its lines are evenly spaced."""
     if not sheet.uniform or sheet.bend is not None:
         return False
     for lines, pitch in ((sheet.lines_x, sheet.d_x), (sheet.lines_y, sheet.d_y)):
@@ -65,7 +65,7 @@ def _even(model: Model, sheet: SheetPart) -> bool:
 
 
 def _common(model: Model, sheet: SheetPart) -> Table:
-    """What a sheet has either way."""
+    """Values that a sheet has in both forms."""
     boxes = range(sheet.first, sheet.first + sheet.count)
     table: Table = {"held": [model.bodies.name[b] for b in boxes if model.bodies.fixed[b]]}
     if np.any(sheet.velocity) or np.any(sheet.spin):

@@ -1,4 +1,4 @@
-"""Forces of all near pairs in an iteration: boxes of two sheets by the overlaps that are kept of them."""
+"""Forces of all near pairs in an iteration; those of boxes of two sheets follow from cached overlaps."""
 
 from __future__ import annotations
 
@@ -40,8 +40,8 @@ from mdlgen.program.kernel import BORROWS, njit
 
 @njit(cache=True, error_model="numpy", **BORROWS)
 def forget_overlaps(pairs, overlaps, first):
-    """Pairs from `first` on, which are searched, are others now. Where none are there is room that nothing
-    has written to, and that takes no memory."""
+    """Invalidates the overlaps of the pairs from `first` on, which were searched again. The unused rows
+    behind them are not written to, so that they take no memory."""
     for k in range(overlaps.size):
         if pairs[first + k].kind < 0:
             break
@@ -50,8 +50,8 @@ def forget_overlaps(pairs, overlaps, first):
 
 @njit(cache=True, error_model="numpy", **BORROWS)
 def look_at(work, k, a, b, gap):
-    """Sees to it that what is kept of the k-th pair that is searched is what its boxes (Frames) have. Returns
-    False where that is not known, since they are clear of each other by more than `gap` [mm]."""
+    """Updates the cached overlap of the k-th searched pair where it no longer holds for its boxes (Frames).
+    Returns False where it is not updated, since the boxes are more than `gap` [mm] apart."""
     if is_known(work, k, a, b):
         return True
     tables, search, mid = work.tables, work.search, work.mid
@@ -69,8 +69,8 @@ def look_at(work, k, a, b, gap):
 
 @njit(cache=True, error_model="numpy", **BORROWS)
 def _two_boxes(work, at, out):
-    """What two boxes of two sheets, a near pair, do into `out` and onto the forces. Returns CLEAR, PRESSES,
-    or BY_SIDES where `out` has their points."""
+    """Writes the contact of two boxes of two sheets, a near pair, into `out` and adds its forces. Returns
+    CLEAR, PRESSES, or BY_SIDES where `out` has their points."""
     tables, mid, p = work.tables, work.mid, work.mid.near[at]
     k = p - work.search.first
     own = work.search.listed[k]
@@ -89,7 +89,7 @@ def _two_boxes(work, at, out):
 
 @njit(cache=True, error_model="numpy", forceinline=True)
 def _note(face, out):
-    """Keeps what is read later of two boxes that touch; of those with points RUBBING and GRIP are not."""
+    """Stores the results of two boxes that touch; RUBBING and GRIP are not read where they have points."""
     face[FACE_FORCE], face[FACE_DEPTH], face[FACE_POINTS] = out[PRESSING], out[DEPTH], out[POINTS]
     face[FACE_RUBBING], face[FACE_GRIP] = out[RUBBING], out[GRIP]
     face[FACE_STORED], face[FACE_LOST] = out[STORED], out[DISSIPATED]
@@ -97,7 +97,7 @@ def _note(face, out):
 
 @njit(cache=True, error_model="numpy", **BORROWS)
 def faces_into(rows, row, face):
-    """Adds what two faces do without points to what a row of the contacts does now."""
+    """Adds the results of two faces without points to the present ones of a row of the contacts."""
     rows[row, FORCE_NOW] += face[FACE_FORCE]
     rows[row, DEPTH_NOW] = max(rows[row, DEPTH_NOW], face[FACE_DEPTH])
     rows[row, TURNING_NOW + ALONG] += face[FACE_RUBBING]
@@ -127,7 +127,7 @@ def near_forces(work, close, h):
             mid.touched[count], mid.rows[count] = p, row
             if p >= first:
                 _note(mid.faces[count], out)
-            # what has no points leaves its row to the next
+            # a pair without points leaves its row to the next
             if p < first or out[POINTS] > 0.0:
                 row += 1
             count += 1
@@ -136,8 +136,8 @@ def near_forces(work, close, h):
 
 @njit(cache=True, error_model="numpy", **BORROWS)
 def _between_steps(tables, mid, k, pair, motion, out):
-    """As `_two_boxes` for a state between steps; k: of the pair among those that are searched. What is kept
-    stays as it is: where it does not hold, it is found in a record of its own."""
+    """As `_two_boxes` for a state between steps; k: number of the pair among those that are searched. Cached
+    overlaps are not changed: one that no longer holds is computed in a separate record."""
     kept, law, kept_on = mid.overlaps[k], law_of(pair), True
     a, b = frame_of(motion, pair.a), frame_of(motion, pair.b)
     if not holds(kept, a, b, 0.0):
@@ -161,8 +161,8 @@ def _between_steps(tables, mid, k, pair, motion, out):
 
 @njit(cache=True, error_model="numpy", **BORROWS)
 def forces_at(tables, mid, first, motion, close):
-    """As `near_forces` for a state between steps, without touching what is kept of overlaps: `first` is the
-    first of the pairs that have any. Returns (how many pairs touch, stored energy)."""
+    """As `near_forces` for a state between steps, without changing cached overlaps: `first` is the first of
+    the pairs that have any. Returns (how many pairs touch, stored energy)."""
     near, f, results = mid.near, mid.forces, mid.results
     count = row = 0
     stored = 0.0

@@ -12,59 +12,60 @@ from mdlgen.mechanics.pair import on_fixed_plate
 from mdlgen.model.tables.contacts import BOX_BOX
 from mdlgen.program.kernel import BORROWS, njit
 
-# Where contacts stand: all apart; those with fixed plates in the matrix of the sheet; all of them there.
+# Treatment of contacts: all condensed; those with fixed plates in the matrix of the sheet; all in the matrix.
 APART, PLANES, INSIDE = 0, 1, 2
 
-# Of Condensed.kept: whether factors may be used again; how many boxes are active; how many stand in W.
+# Columns of Condensed.kept: 1 where factors may be reused; number of active boxes; number of boxes in W.
 REUSE, ACTIVE, STANDING = 0, 1, 2
-# Of Condensed.looked: how many pairs touch; whether that is where the boxes end; how many `mine` lists.
+# Columns of Condensed.looked: number of pairs that touch; 1 where evaluated at the final velocities; number
+# of pairs in `mine`.
 TOUCHED, UP_TO_DATE, MINE = 0, 1, 2
 
 
 class Condensed(NamedTuple):
     """Arrays for the boxes that touch, made once for a run."""
 
-    slot_of: np.ndarray  # (nodes,) where a node's columns are kept, -1: nowhere
-    owner: np.ndarray  # (slots,) and whose they are
-    following: np.ndarray  # (1,) slot to be filled next
-    cols: np.ndarray  # (slots, 6, 6 nodes) columns of the inverse
-    place_of: np.ndarray  # (nodes,) place among the chosen, -1: none
-    chosen: np.ndarray  # nodes, by place
-    active: np.ndarray  # places of those that touch now, by rank
-    rank: np.ndarray  # by place, -1: does not touch
-    kept: np.ndarray  # (3,) REUSE, ACTIVE, STANDING
-    stood: np.ndarray  # nodes that stand in W, by place
-    rollers: np.ndarray  # bodies that turn or slide, pressed plates too
-    growth: np.ndarray  # of impulses with the velocities of active boxes and rollers
-    w: np.ndarray  # compliance of the chosen
-    part: np.ndarray  # of those of them that touch now
-    jac: np.ndarray  # 1 + W growth, transposed, or its factors
-    swaps: np.ndarray  # exchanged rows
-    own: np.ndarray  # the rollers' inverse masses
-    measure: np.ndarray  # what an unknown counts as velocity
-    z: np.ndarray  # changes of velocity: chosen boxes, then rollers
+    slot_of: np.ndarray  # (nodes,) slot of a node's columns, -1: none.
+    owner: np.ndarray  # (slots,) node of each slot.
+    following: np.ndarray  # (1,) slot to be filled next.
+    cols: np.ndarray  # (slots, 6, 6 nodes) columns of the inverse.
+    place_of: np.ndarray  # (nodes,) place among the chosen boxes, -1: none.
+    chosen: np.ndarray  # nodes, by place.
+    active: np.ndarray  # places of the boxes that touch now, by rank.
+    rank: np.ndarray  # rank by place, -1: does not touch.
+    kept: np.ndarray  # (3,) REUSE, ACTIVE, STANDING.
+    stood: np.ndarray  # nodes in W, by place.
+    rollers: np.ndarray  # bodies that turn or slide, pressed plates too.
+    growth: np.ndarray  # growth of impulses with the velocities of active boxes and rollers.
+    w: np.ndarray  # compliance W of the chosen boxes.
+    part: np.ndarray  # compliance of the active boxes.
+    jac: np.ndarray  # 1 + W growth, transposed, or its factors.
+    swaps: np.ndarray  # exchanged rows.
+    own: np.ndarray  # inverse masses of the rollers.
+    measure: np.ndarray  # factors that convert unknowns to velocities.
+    z: np.ndarray  # changes of velocity: chosen boxes, then rollers.
     z0: np.ndarray
-    gap: np.ndarray  # what is left of the equations
+    gap: np.ndarray  # residual of the equations.
     step: np.ndarray
-    short: np.ndarray  # the same of active boxes and rollers
-    push: np.ndarray  # and what it adds to the impulses
-    p: np.ndarray  # impulses
-    p0: np.ndarray  # at the start
-    used: np.ndarray  # as the last step took them, linear
-    forces: np.ndarray  # (bodies, 6)
-    axes: np.ndarray  # (bodies, 9) of the boxes, in which the matrix stands
-    mine: np.ndarray  # near pairs of the chosen
-    seen: np.ndarray  # (pairs,) whether a pair is one of them
-    looked: np.ndarray  # (3,) TOUCHED, UP_TO_DATE, MINE
-    touched: np.ndarray  # those that touch
-    results: np.ndarray  # and what they do
-    pair: np.ndarray  # (6, 6) growth of one pair's forces
-    direction: np.ndarray  # (4, 6) how the unknowns of a pair's rollers move them
-    which: np.ndarray  # (4,) and which they are
+    short: np.ndarray  # step of active boxes and rollers.
+    push: np.ndarray  # decrease of the impulses due to it.
+    p: np.ndarray  # impulses.
+    p0: np.ndarray  # impulses at the start.
+    used: np.ndarray  # impulses linearised by the last step.
+    forces: np.ndarray  # (bodies, 6).
+    axes: np.ndarray  # (bodies, 9) axes of the boxes, in which the matrix is written.
+    mine: np.ndarray  # near pairs of the chosen boxes.
+    seen: np.ndarray  # (pairs,) true where `mine` has a pair.
+    looked: np.ndarray  # (3,) TOUCHED, UP_TO_DATE, MINE.
+    touched: np.ndarray  # pairs that touch.
+    results: np.ndarray  # results of their contacts.
+    pair: np.ndarray  # (6, 6) growth of one pair's forces.
+    direction: np.ndarray  # (4, 6) directions in which the unknowns of a pair's rollers move them.
+    which: np.ndarray  # (4,) numbers of these unknowns.
 
 
 def empty(system, wide: int) -> Condensed:
-    """Arrays for a System; `wide` numbers hold what a pair does."""
+    """Arrays for a System; `wide`: numbers in the result of a pair."""
     nodes, border, pairs = len(system.nodes), system.border, len(system.pairs)
     slots = int(min(nodes, max(8, COLUMNS / (288 * max(nodes, 1)))))
     # above this a factor of the whole matrix is cheaper than one of this system
@@ -113,7 +114,7 @@ def empty(system, wide: int) -> Condensed:
 
 @njit(cache=True, error_model="numpy", **BORROWS)
 def forget(condensed):
-    """Drops the columns of a matrix that is no more."""
+    """Drops the columns of the last matrix."""
     condensed.slot_of[:] = -1
     condensed.owner[:] = -1
     condensed.kept[REUSE] = condensed.kept[STANDING] = 0
@@ -131,7 +132,7 @@ def release(condensed, m):
 @njit(cache=True, error_model="numpy", **BORROWS)
 def choose(bodies, pairs, touched, count, where, condensed, m, most):
     """Adds boxes that touch to the m chosen ones; returns how many they are, -1: more than `most`,
-    or boxes of two sheets touch each other: they stand in the matrix."""
+    or boxes of two sheets touch each other: these contacts must be in the matrix."""
     if where == INSIDE:
         return 0
     for k in range(count):
@@ -154,7 +155,7 @@ def choose(bodies, pairs, touched, count, where, condensed, m, most):
 
 @njit(cache=True, error_model="numpy", **BORROWS)
 def columns(a, condensed, m):
-    """Makes the columns of the inverse for the chosen boxes that have none, and W where it is not of them."""
+    """Computes the missing columns of the inverse for the chosen boxes, and W where it is for other boxes."""
     slot_of, owner, cols, chosen, w = (
         condensed.slot_of,
         condensed.owner,
@@ -193,7 +194,7 @@ def columns(a, condensed, m):
 
 @njit(cache=True, error_model="numpy", **BORROWS)
 def unsee(condensed):
-    """Forgets which pairs were looked at."""
+    """Clears the list of pairs that were evaluated."""
     for k in range(condensed.looked[MINE]):
         condensed.seen[condensed.mine[k]] = False
     condensed.looked[UP_TO_DATE] = condensed.looked[MINE] = 0

@@ -1,13 +1,13 @@
 """The contact solve: the condensed system of the boxes that touch something and of the rollers.
 
-A contact changes with every step, the lattice hardly does. So the matrix that is factored holds masses and
-bushings only, in axes that turn with each box, and its factor lasts. What impulses p of contacts do to the
-boxes they act on follows from a small dense matrix, the compliance W of these boxes (their rows and columns
-of the inverse). With z the change of their velocities, in box axes,
+Contacts change with every step, the lattice hardly does. So the factored matrix has masses and bushings only,
+in axes that turn with each box, and its factor serves many steps. A small dense matrix relates the impulses p
+of contacts to the velocities of the boxes that they act on. It is the compliance W of these boxes: their rows
+and columns of the inverse. With z the change of their velocities, in box axes,
 
     z = z0 + W (p(z) - p(0)),
 
-z0 being what the residual alone changes. Rollers stand in the same system with inverse masses of their own.
+where z0 is the change due to the residual alone. Rollers enter the same system with their inverse masses.
 Newton's method solves it with the whole derivative of the contact forces, friction's growth with the normal
 force included.
 """
@@ -61,7 +61,7 @@ def _mine(bodies, pairs, near, where, condensed):
     count = 0
     for k in range(near.size):
         pair = pairs[near[k]]
-        if pair.kind == BOX_BOX:  # where these touch, all contacts stand in the matrix
+        if pair.kind == BOX_BOX:  # where these touch, all contacts are in the matrix
             continue
         node = bodies[pair.a].node
         inside = where == PLANES and on_fixed_plate(pair, bodies[pair.b])
@@ -74,7 +74,7 @@ def _mine(bodies, pairs, near, where, condensed):
 
 @njit(cache=True, error_model="numpy", **BORROWS)
 def _take(tables, mid, many, condensed, m):
-    """Takes over what its pairs do, of the `many` that touch at the midpoint; returns how many touch."""
+    """Copies the results of its pairs from the `many` that touch at the midpoint; returns how many touch."""
     pairs, nodes, touched = tables.pairs, tables.nodes, mid.touched
     forces, count = condensed.forces, 0
     for i in range(m):
@@ -194,7 +194,7 @@ def _evaluate(tables, h, t, state, motion, condensed, m):
 
 @njit(cache=True, error_model="numpy", fastmath={"contract", "reassoc"}, **BORROWS)
 def _gap(condensed, m, many):
-    """What is left of the system's equations, into `gap`; returns its square, in velocities."""
+    """Writes the residual of the system into `gap`; returns its square, in velocities."""
     w, p, p0, push = condensed.w, condensed.p, condensed.p0, condensed.push
     boxes = 6 * m
     for i in range(many):
@@ -215,7 +215,7 @@ def _gap(condensed, m, many):
 
 @njit(cache=True, error_model="numpy", fastmath={"contract", "reassoc"}, boundscheck=False, **BORROWS)
 def _apply(condensed, m, res, resb):
-    """Completes what is to be taken off by what the contacts add to it."""
+    """Adds the effect of the contacts to the change of velocities that is to be subtracted."""
     used, p0 = condensed.used, condensed.p0
     for j in range(m):
         cols, k = condensed.cols[condensed.slot_of[condensed.chosen[j]]], 6 * j
@@ -230,12 +230,12 @@ def _apply(condensed, m, res, resb):
 
 @njit(cache=True, error_model="numpy", **BORROWS)
 def solve_contacts(work, m, where, h, t, seen, limits):
-    """Solves for the velocities of the m chosen boxes and of the rollers. Returns whether it converged: what
-    is left is below the first of `limits`, or an iteration moved them by less than the second.
+    """Solves for the velocities of the m chosen boxes and of the rollers. Returns True if it converged: the
+    residual is below the first of `limits`, or an iteration changed them by less than the second.
 
     The midpoint is that after h, at time t; `seen`: how many pairs are near there, and how many touch. The
-    matrix's `res` is what the lattice alone would lose of its velocities, in box axes, and `resb` the
-    rollers' residual; both become what is to be taken off.
+    matrix's `res` is the decrease of velocities due to the lattice alone, in box axes, and `resb` the
+    residual of the rollers. Both become the change that is to be subtracted.
     """
     tables, state, mid, condensed = work.tables, work.state, work.mid, work.condensed
     bodies, pairs, ub, xm = tables.bodies, tables.pairs, state.ub, mid.motion.x
@@ -270,7 +270,7 @@ def solve_contacts(work, m, where, h, t, seen, limits):
                 return False
         condensed.kept[REUSE] = 1
         newton(condensed, m, active, short)
-        # impulses as this step takes them, linear: with them the sheet moves as the chosen boxes do
+        # impulses linearised by this step: with them the whole sheet moves consistently with the chosen boxes
         for i in range(boxes):
             used[i] = p[i] - condensed.push[i]
         change = 0.0

@@ -1,11 +1,10 @@
-"""How far sheets have moved at most, by which what is known of pairs of their boxes stays known without a
-look.
+"""Bounds on the motion of sheets, within which cached overlaps and lists of near pairs need no check.
 
-Whether an overlap that is kept still is what two boxes have takes as long as half of their force, and which
-pairs are near as long as the other half. Sheets that hardly move need no such look: places of a sheet, and
-places that it would have were it larger, move by no more than its speed times the time. So a look at two
-sheets makes sure that their overlaps hold for a while longer (overlap.holds), and none follows until both may
-have moved as far together. Likewise pairs are listed that are near by some more than they need be.
+Checking that a cached overlap is still valid costs half as much as evaluating the contact force; the search
+for near pairs costs as much again. Sheets that hardly move need neither: no place of a sheet moves by more
+than its greatest speed times the time. So a check of two sheets leaves a margin for which their overlaps hold
+(overlap.holds), and the next one follows when both together may have moved by it. Likewise the list of near
+pairs has an extra margin.
 """
 
 from __future__ import annotations
@@ -21,7 +20,7 @@ from mdlgen.program.kernel import BORROWS, njit
 
 @njit(cache=True, error_model="numpy", **BORROWS)
 def _rates(work):
-    """How fast places of each sheet, and of its boxes' neighbours on other sheets, are at most."""
+    """Updates the bound on the speed of each sheet, at all places that its neighbours' boxes may reach."""
     nodes, u, label, drift = work.tables.nodes, work.state.u, work.free.label, work.mid.drift
     far = 2.0 * work.search.size  # from the middle of a box to the far corner of another one
     drift.rates[:] = 0.0
@@ -33,7 +32,7 @@ def _rates(work):
 
 @njit(cache=True, error_model="numpy", **BORROWS)
 def look_ahead(work, h):
-    """Notes of which regions a look is due, h [ms] after the state, where boxes move at its velocities."""
+    """Marks the regions whose overlaps must be checked, h [ms] after the state at its velocities."""
     drift, regions = work.mid.drift, work.search.regions
     _rates(work)
     for k in range(regions.size):
@@ -50,7 +49,7 @@ def look_ahead(work, h):
 @njit(cache=True, error_model="numpy", **BORROWS)
 def list_near(work, margin, h, found):
     """Lists the pairs that are near in the middle of a step, h [ms] after the state, as forces.near_pairs
-    does with `margin` [mm], maybe with some more of those that are searched; returns how many."""
+    does with `margin` [mm]; may list some more of those that are searched. Returns how many."""
     tables, motion, drift, regions = work.tables, work.mid.motion, work.mid.drift, work.search.regions
     count = near_of_model(tables, motion, margin, 2.0 * h, found)
     if regions.size == 0:
@@ -64,7 +63,7 @@ def list_near(work, margin, h, found):
             if sheet >= 0:
                 moved, rate = moved + drift.moved[sheet], rate + drift.rates[sheet]
         fastest = max(fastest, rate)
-        # it moves as far again in the step as to its middle
+        # from the middle to the end of the step it moves as far again
         was = max(was, moved + 3.0 * h * rate - drift.list_moved[k])
     if not was <= may[SLACK] or margin > may[MARGIN]:
         spare = SPARE if 3.0 * h * fastest <= SPARE_PART * SPARE else 0.0
@@ -84,14 +83,14 @@ def list_near(work, margin, h, found):
 
 @njit(cache=True, error_model="numpy", **BORROWS)
 def list_anew(drift):
-    """Pairs that are searched are others now, or a step was given up that may have left anything."""
+    """Invalidates the list and all overlaps: after a search, or after a step that failed."""
     drift.list_holds[SLACK] = -1.0
     drift.looked[:] = -math.inf
 
 
 @njit(cache=True, error_model="numpy", **BORROWS)
 def add_step(work, dt):
-    """A step of dt [ms] is taken."""
+    """Adds the motion of a step of dt [ms]."""
     drift = work.mid.drift
     _rates(work)
     for sheet in range(drift.moved.size):

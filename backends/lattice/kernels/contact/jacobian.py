@@ -24,7 +24,7 @@ from mdlgen.program.kernel import BORROWS, njit
 
 @njit(cache=True, error_model="numpy", **BORROWS)
 def activate(bodies, pairs, count, condensed):
-    """Lists the active boxes, which touch something now. Returns whether they are those of the last time."""
+    """Lists the active boxes, which touch something now. Returns True if they are those of the last call."""
     active, rank, kept = condensed.active, condensed.rank, condensed.kept
     found, same = 0, True
     for i in range(kept[ACTIVE]):
@@ -52,8 +52,8 @@ def _put(g, row, column, sign, t):
 
 @njit(cache=True, error_model="numpy", **BORROWS)
 def _rollers(body, x, arm, axes, sign, first, direction, index, found):
-    """A roller's unknowns that move it against a box, each as a velocity and an angular velocity at the box's
-    centre; `arm` goes from there to the roller's, which is x."""
+    """Lists a roller's unknowns that move it against a box, each as a velocity and an angular velocity at the
+    box's centre; `arm` is the vector from there to the roller's centre x."""
     if body.slide >= 0:
         turn = back(axes, turn_of(body))
         way = add(back(axes, way_of(body, x)), cross(arm, turn))
@@ -73,7 +73,7 @@ def _rollers(body, x, arm, axes, sign, first, direction, index, found):
 
 @njit(cache=True, error_model="numpy", **BORROWS)
 def _point_growth(growth, t, arm):
-    """Adds what a force at an arm loses as the velocity there grows: t, in the axes of the box."""
+    """Adds the decrease of a force at an arm per velocity there: t, in the axes of the box."""
     right = hat_right(t, arm)
     _put(growth, 0, 0, 1.0, t)
     _put(growth, 0, 3, -1.0, right)
@@ -83,7 +83,7 @@ def _point_growth(growth, t, arm):
 
 @njit(cache=True, error_model="numpy", forceinline=True)
 def _add_outer(growth, force, torque, way, turn):
-    """Adds a force and a torque for 1 of the velocity along `way` and of the turning along `turn`."""
+    """Adds a force and a torque per velocity along `way` and per angular velocity along `turn`."""
     for i in range(3):
         for j in range(3):
             growth[i, j] += force[i] * way[j]
@@ -94,8 +94,8 @@ def _add_outer(growth, force, torque, way, turn):
 
 @njit(cache=True, error_model="numpy", **BORROWS)
 def _pair_growth(pair, out, axes, h, motion, chord, growth):
-    """What the points of one pair do together: a 6 x 6 matrix of the motion of one body against the other,
-    seen from the centre of the first, in the axes of the box."""
+    """Sums the slopes of all points of a pair: a 6 x 6 matrix for the motion of one body against the other,
+    about the centre of the first, in the axes of the box."""
     x, u, w = motion.x, motion.u, motion.w
     for i in range(6):
         for j in range(6):
@@ -124,8 +124,8 @@ def _pair_growth(pair, out, axes, h, motion, chord, growth):
             line = back(axes, sub(three_from(out, at + LINE), vec(x, pair.a)))
             way = back(axes, three_from(out, at + WAY))
             force = scale(damping, sub(normal, scale(phi, pull)))
-            # as the face turns so does the way along which a passing sheet closes; a roller's own turning
-            # is across it wherever the line is
+            # the direction along which a passing sheet closes turns with the face; a roller's own rotation is
+            # perpendicular to it wherever the contact line is
             passing = sub(
                 add(back(axes, vec(u, pair.a)), cross(back(axes, vec(w, pair.a)), line)),
                 back(axes, vec(u, pair.b)),
@@ -178,7 +178,7 @@ def gradient(tables, h, motion, count, condensed, acting, many, chord):
 
 @njit(cache=True, error_model="numpy", **BORROWS)
 def clutches(tables, h, t, state, condensed, m, active):
-    """Adds what the impulses of clutches and motors lose as their rollers turn faster."""
+    """Adds the decrease of the impulses of clutches and motors per angular velocity of their rollers."""
     bodies, axles = tables.bodies, tables.shapes.axles
     for b in condensed.rollers:
         spin = bodies[b].spin
@@ -189,8 +189,8 @@ def clutches(tables, h, t, state, condensed, m, active):
 
 @njit(cache=True, error_model="numpy", fastmath={"contract", "reassoc"}, boundscheck=False, **BORROWS)
 def newton_matrix(condensed, acting, many):
-    """1 + W growth of the boxes that touch and of the rollers, transposed: what a column is made of are rows
-    of W, which is symmetric."""
+    """1 + W growth of the boxes that touch and of the rollers, transposed. Columns are sums of rows of W,
+    which is symmetric."""
     growth, w, part, jac, active, own = (
         condensed.growth,
         condensed.w,
@@ -226,8 +226,8 @@ def newton_matrix(condensed, acting, many):
 
 @njit(cache=True, error_model="numpy", fastmath={"contract", "reassoc"}, **BORROWS)
 def newton(condensed, m, acting, many):
-    """A step of Newton's method, of all chosen boxes and the rollers, with the factored matrix; `push` is
-    what it takes off the impulses on the boxes."""
+    """Computes a Newton step of all chosen boxes and the rollers with the factored matrix; `push` is the
+    decrease of the impulses on the boxes."""
     growth, w, active, gap = condensed.growth, condensed.w, condensed.active, condensed.gap
     short, push, step = condensed.short, condensed.push, condensed.step
     boxes = 6 * acting

@@ -1,4 +1,4 @@
-"""Overlaps that are kept of boxes of two sheets: whether they still hold, and what they do."""
+"""Cached overlaps of boxes of two sheets: the check that they still hold, and their forces."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from mdlgen.program.kernel import BORROWS, njit
 
 @njit(cache=True, error_model="numpy", **BORROWS)
 def is_known(work, k, a, b):
-    """Whether what is kept of the k-th pair that is searched is what its boxes (Frames) have."""
+    """True if the cached overlap of the k-th searched pair still holds for its boxes (Frames)."""
     own, kept, looks = work.search.listed[k], work.mid.overlaps[k], work.mid.drift.looks
     if kept.state != OVERLAPS and kept.state != APART:
         return False
@@ -25,8 +25,8 @@ def is_known(work, k, a, b):
 
 @njit(cache=True, error_model="numpy", **BORROWS)
 def pressed(work, k, a, b, out):
-    """What the overlap that is kept of the k-th pair that is searched does, into `out`: CLEAR, PRESSES or
-    BY_SIDES."""
+    """Writes the contact of the k-th searched pair, from its cached overlap, into `out`; returns CLEAR,
+    PRESSES or BY_SIDES."""
     search, mid, own, kept = work.search, work.mid, work.search.listed[k], work.mid.overlaps[k]
     if kept.state != OVERLAPS:
         return CLEAR

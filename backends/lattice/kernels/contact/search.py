@@ -1,4 +1,4 @@
-"""The search itself: boxes into cells, pairs out of them, and when that has to be done again."""
+"""The neighbour search: sorts boxes into cells, lists pairs, and detects when the search must be repeated."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ from mdlgen.mechanics.frame import (
 from mdlgen.model.tables import BOX_BOX
 from mdlgen.program.kernel import njit
 
-EMPTY = -1  # kind of a pair that is none
+EMPTY = -1  # kind of an unused row
 
 
 @njit(cache=True, error_model="numpy", forceinline=True)
@@ -28,7 +28,7 @@ def _hash(i, j, k, many):
 
 @njit(cache=True, error_model="numpy")
 def _sort(search, x):
-    """Puts the boxes into their cells, and keeps where they are."""
+    """Puts the boxes into their cells, and stores their places."""
     search.head[:] = -1
     for b in search.boxes:
         for i in range(3):
@@ -41,14 +41,14 @@ def _sort(search, x):
 
 @njit(cache=True, error_model="numpy")
 def look(pairs, search, x):
-    """Lists the pairs of boxes that are near behind those of the Model. Returns whether there was room."""
+    """Lists the near pairs of boxes behind those of the Model. Returns False if the array is full."""
     if search.regions.size == 0:
         return True
     _sort(search, x)
     count, listed = search.first, search.listed
     for number in range(search.regions.size):
         region = search.regions[number]
-        for a in search.boxes:  # of a half, those of one side
+        for a in search.boxes:  # of a halved scene, those of one side
             if not region.a <= a < region.a + region.many_a:
                 continue
             for cell in range(27):
@@ -68,7 +68,7 @@ def look(pairs, search, x):
                             own.a, own.b, own.region = a, b, number
                             count += 1
                     b = search.following[b]
-    if count < pairs.size:  # what stands behind is not read
+    if count < pairs.size:  # rows behind this one are not read
         pairs[count].kind = listed[count - search.first].a = EMPTY
     return True
 
@@ -91,8 +91,8 @@ def mark_of(region, a, b):
 
 @njit(cache=True, error_model="numpy", forceinline=True)
 def law_of_boxes(search, own):
-    """Law of a pair that is searched, from its row `own` of LISTED: as `_fill` leaves it in the pair itself,
-    which is far away in memory."""
+    """Law of a searched pair, from its row `own` of LISTED. It equals the one that `_fill` writes into the
+    record of the pair, which is slower to read."""
     region, rough = search.regions[own.region], search.rough[own.a] * search.rough[own.b]
     row = region.law
     return Law(
@@ -110,8 +110,8 @@ def law_of_boxes(search, own):
 
 @njit(cache=True, error_model="numpy")
 def strayed(bodies, search, x, u, dt):
-    """Whether a box would be further than half of SKIN from where it was searched, after dt at the
-    velocities u (nodes, 6)."""
+    """True if, after dt at the velocities u (nodes, 6), a box would be further than half of SKIN from its
+    place in the last search."""
     for b in search.boxes:
         n = bodies[b].node
         if n < 0:

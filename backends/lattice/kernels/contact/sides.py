@@ -1,8 +1,8 @@
-"""Sheets stay on the sides of each other that they are on.
+"""Prevents sheets from passing through each other.
 
-The law of two boxes knows where they are, not where they came from: once the middle of a thin sheet is behind
-that of the other, it is pushed out at the far side. Newton's method could go there in one iteration, where
-faces that only just touch have no stiffness yet; and a step could end there.
+The law of two boxes depends on where they are, not on where they came from: once the middle of a thin sheet
+is behind that of the other, it is pushed out at the far side. A Newton iteration could move it there, since
+faces that only just touch have no stiffness yet; so could a step.
 """
 
 from __future__ import annotations
@@ -17,8 +17,8 @@ from mdlgen.program.kernel import njit
 
 @njit(cache=True, error_model="numpy")
 def part_of_change(tables, near, close, r, h, change):
-    """The part of a change of velocities (6 nodes,), taken off, that moves no box of the pairs near[:close]
-    further to another sheet in h than it may in one iteration; at most 1."""
+    """Part, at most 1, of a change of velocities (6 nodes,) that may be subtracted. With it no box of the
+    pairs near[:close] approaches another sheet, in h, by more than one iteration allows."""
     bodies, listed, most = tables.bodies, tables.listed, 0.0
     for n in range(tables.nodes.size):
         most = max(most, change[6 * n] ** 2 + change[6 * n + 1] ** 2 + change[6 * n + 2] ** 2)
@@ -43,10 +43,10 @@ def part_of_change(tables, near, close, r, h, change):
 
 @njit(cache=True, error_model="numpy")
 def _height(bodies, pair, x, r):
-    """How high the middle of the second box's face stands over that of the first, in the axes of the first
-    and in the middle of where their outlines overlap, and whether they do.
+    """Height of the middle of the second box over that of the first, and True if their outlines overlap.
 
-    Boxes that lean to each other, and overlap in a part alone, have centres that may pass each other's plane.
+    The height is along the normal of the first, at the middle of the common outline. The centres would not
+    do: those of inclined boxes that overlap only in part may pass each other's plane.
     """
     one, half, other = mat(r, pair.a), bodies[pair.a].half, bodies[pair.b].half
     place = back(one, sub(vec(x, pair.b), vec(x, pair.a)))

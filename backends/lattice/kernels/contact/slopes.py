@@ -1,4 +1,4 @@
-"""What the force of one contact point loses as the bodies move: the 3 x 3 matrices of a tangent."""
+"""Decrease of the force of one contact point per motion of its bodies: the 3 x 3 matrices of a tangent."""
 
 from __future__ import annotations
 
@@ -70,11 +70,11 @@ def hat_left(q, t):
 
 @njit(cache=True, error_model="numpy", forceinline=True)
 def steepness(y, v_s, chord):
-    """Growth with v of what changes sign over v_s, at v = y v_s, with a part of its chord.
+    """Slope, with weight `chord` of the secant, of a force that changes sign over v_s, at v = y v_s.
 
-    Damping and friction grow steeply at small speeds and hardly at all at large ones. A step along the
-    tangent of the flat part would cross to the other side, and back; a step along the chord to zero stops
-    there. A good part of the chord converges from both sides.
+    Damping and friction grow steeply at small speeds and hardly at all at large ones. A Newton step along the
+    tangent of the flat part would overshoot to the other side, and back; a step along the secant through zero
+    ends at zero. With enough weight of the secant it converges from both sides.
     """
     if abs(y) < 1.0:
         return max(1.5 * (1.0 - y * y), chord * 0.5 * (3.0 - y * y)) / v_s
@@ -83,16 +83,16 @@ def steepness(y, v_s, chord):
 
 @njit(cache=True, error_model="numpy", **BORROWS)
 def couple_growth(out, at, h, law, chord):
-    """What the couple of rolling resistance loses as the relative angular velocity grows, times h."""
+    """Decrease of the couple of rolling resistance per relative angular velocity, times h."""
     v_n = law[LAW_SMOOTHING]
     return h * out[at + MOST_COUPLE] * out[at + RADIUS] * steepness(out[at + ROLLING] / v_n, v_n, chord)
 
 
 class Numbers(NamedTuple):
-    """Of one contact point what its slopes follow from: the elastic force and its growth with depth, the
-    normal force that friction counts by, the rate that damps it and the speed over which it does, the share
-    of damping, both coefficients of friction and their speeds, what a spring holds by (see laws), 0: none
-    does; `alone`: its own rate damps it."""
+    """Values of one contact point from which its slopes follow. In order: the elastic force; its growth with
+    depth; the normal force that limits friction; the rate that damps it; the speed over which it does; the
+    share of damping; both coefficients of friction; their speeds; the stiffness of a spring of friction (see
+    laws), 0: none; `alone`: true if its own rate damps it."""
 
     spring: float
     growth: float
@@ -149,11 +149,12 @@ def rubbing(numbers, speed, h, chord):
 
 @njit(cache=True, error_model="numpy", **BORROWS)
 def core(numbers, n, square, slip, h, chord, whole):
-    """What the force of one contact point loses as the relative velocity grows, times h: a 3 x 3 matrix for
-    the velocity at the point, and, where a nip damps it (0 else), what its normal force loses as the contact
-    line closes, with its friction per slip velocity for 1 of that force.
+    """Decrease of the force of one contact point per relative velocity, times h.
 
-    n: the normal; square: the direction that friction acts square to, which is the normal, or a nip's;
+    Returns a 3 x 3 matrix for the velocity at the point; the decrease of the normal force per closing rate of
+    the contact line, where a nip damps it, else 0; friction per slip velocity and per normal force.
+
+    n: the normal; square: the direction that friction is perpendicular to, which is the normal, or a nip's;
     `whole`: with the growth of friction with the normal force, which is not symmetric.
     """
     spring, growth, force, rate, v_n, beta, _s, _d, _v_s, _v_d, _hold, alone = numbers

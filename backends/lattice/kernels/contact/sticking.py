@@ -46,7 +46,7 @@ def _copy(to, of):
 
 @njit(cache=True, error_model="numpy", **BORROWS)
 def set_aside(sticks):
-    """Takes the stretches of all pairs out of their places, before pairs are searched anew."""
+    """Moves the stretches of all pairs to `aside`, before the next search of pairs."""
     sticks.head[:] = -1
     count = 0
     for k in range(sticks.pairs.size):

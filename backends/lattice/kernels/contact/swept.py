@@ -1,5 +1,5 @@
-"""What a step sweeps over: pairs that are too deep, or change sides, between its begin and its end, and the
-energy that it makes where it begins before a contact and ends in it."""
+"""Checks of a step between its beginning and its end: pairs that are too deep, or change sides; and the
+energy error of contacts that begin or end within it."""
 
 from __future__ import annotations
 
@@ -46,23 +46,23 @@ from mdlgen.mechanics.vector import add, dot, mat, scale, sub, three, three_from
 from mdlgen.model.tables import BOX_CYLINDER, BOX_PLANE
 from mdlgen.program.kernel import BORROWS, njit
 
-# What contacts do beyond what is known of the middle of a step [N mm]: energy that they store, either way,
-# and that their damping misses; in the end MISSES has both.
+# Energy errors of contacts in a step, beyond the work of its midpoint [N mm]: of the stored energy, of either
+# sign, and of the damping. In the end MISSES has both.
 STORES, MISSES = 0, 1
 
 
 class Before(NamedTuple):
-    """The middle of the step before: velocities of nodes and of the border there, and which part of the way
-    from there to the middle of this step is in this one."""
+    """Velocities of nodes and border in the middle of the step before, and the part of the time from there to
+    the middle of this step that lies in this step."""
 
-    u: np.ndarray  # (nodes, 6)
-    ub: np.ndarray  # (border,)
+    u: np.ndarray  # (nodes, 6).
+    ub: np.ndarray  # (border,).
     part: float
 
 
 @njit(cache=True, error_model="numpy", forceinline=True)
 def _place(tables, state, b, h, t, motion):
-    """One body after h of a step from t, whose velocities are those of its middle."""
+    """Places one body after h of a step from t, at the velocities of its middle."""
     x, r, u, ub = state.x, state.r, state.u, state.ub
     xs, rs, us, ws = motion
     body = tables.bodies[b]
@@ -86,14 +86,15 @@ def _place(tables, state, b, h, t, motion):
 
 @njit(cache=True, error_model="numpy", forceinline=True)
 def _hits(bodies, pair, rows):
-    """Whether a pair's contacts are impacts: under a roller the boxes of a sheet take turns, and together
-    store what the one before did, but where none of them touched it. rows: of Kept, after the step before."""
+    """True if the contacts of a pair are impacts. The boxes of a sheet pass a roller in turn, and together
+    store as much as before; so they are impacts only where none touched it. rows: Kept.rows, after the step
+    before."""
     return pair.kind != BOX_CYLINDER or bodies[pair.a].exposed == BLOCK or rows[pair.row, FORCE_NOW] == 0.0
 
 
 @njit(cache=True, error_model="numpy", forceinline=True)
 def _clear(bodies, pair, x, r, way):
-    """Whether a box is further above a plane than both may come closer in a step."""
+    """True if the height of a box above a plane exceeds the most approach in a step, `way` [mm]."""
     if pair.kind != BOX_PLANE:
         return False
     a, b = pair.a, pair.b
@@ -106,8 +107,8 @@ def _clear(bodies, pair, x, r, way):
 
 @njit(cache=True, error_model="numpy", **BORROWS)
 def _changed(body, b, state, mid, slower):
-    """By how much the velocity and the angular velocity of one body have changed from the middle of the step
-    before to the middle of this one; slower: see Before."""
+    """Change of the velocity and the angular velocity of one body, from the middle of the step before to the
+    middle of this one; slower: see Before."""
     n = body.node
     if n >= 0:
         u, kept = state.u, slower.u
@@ -125,7 +126,7 @@ def _changed(body, b, state, mid, slower):
 
 @njit(cache=True, error_model="numpy", **BORROWS)
 def _fastest_at_ends(tables, state, slower, fastest):
-    """How fast any place of a free box is at most at either end of a step, in fastest[ENDS]."""
+    """Bound on the speed of any place of a free box at either end of a step, into fastest[ENDS]."""
     u, kept = state.u, slower.u
     for n in range(tables.nodes.size):
         b = tables.nodes[n]
@@ -136,17 +137,17 @@ def _fastest_at_ends(tables, state, slower, fastest):
 
 @njit(cache=True, error_model="numpy", forceinline=True)
 def _little(region, fast, dt, least):
-    """Whether two faces that move against each other at `fast` at most, at either end of a step, make less
-    than `least` of energy: where none turns back faster than what damps it over, damping misses nothing, and
-    a depth that changes by z in half of the step stores no more than 0.46 k z^5/2 beyond the work done on it
-    (the most of impacts.stored_beyond for any depth)."""
+    """True if the energy error of two faces is below `least`, where `fast` bounds their relative speed at
+    either end of a step. Below the smoothing speed damping has no error. A depth that changes by z in half of
+    the step stores at most 0.46 k z^5/2 beyond the work done on it (the maximum of impacts.stored_beyond over
+    the depth)."""
     way = 0.5 * dt * fast
     return fast < region.law[LAW_SMOOTHING] and 0.46 * region.k * way * way * math.sqrt(way) < least
 
 
 @njit(cache=True, error_model="numpy", **BORROWS)
 def _faces_make_little(work, dt, least):
-    """The same of any two boxes of two sheets."""
+    """True if that holds for any two boxes of two sheets."""
     ends, nodes, regions = work.mid.fastest[ENDS], work.tables.nodes, work.search.regions
     most, little = 0.0, True
     for n in range(nodes.size if regions.size > 0 else 0):
@@ -159,8 +160,9 @@ def _faces_make_little(work, dt, least):
 @njit(cache=True, error_model="numpy", **BORROWS)
 def _made(work, count, dt, slower, may, rows):
     """Adds to `rows` (contacts, STORES and MISSES) the energy that contacts store in a step beyond the work
-    done on them, and what their damping should have taken and did not. `slower`: see _changed; `may`: of each
-    contact, and the least. Boxes of two sheets that cannot make SWEPT_LITTLE of it together are left out."""
+    done on them, and the energy that their damping missed. `slower`: see _changed; `may`: allowed error of
+    each contact, and the least. Boxes of two sheets whose errors stay below SWEPT_LITTLE of it are
+    omitted."""
     bodies, pairs, state, mid = work.tables.bodies, work.tables.pairs, work.state, work.mid
     touched, motion, ends, search = mid.touched, mid.motion, mid.fastest[ENDS], work.search
     listed, first = work.tables.listed, search.first
@@ -213,8 +215,8 @@ def _made(work, count, dt, slower, may, rows):
 
 @njit(cache=True, error_model="numpy", forceinline=True)
 def _slow(bodies, own, k, fastest, dt, little):
-    """Whether two boxes of two sheets, of their row of LISTED and their stiffness, move too little in a step
-    to cross each other unseen, or to make more than `little` of energy where they come to touch."""
+    """True if two boxes of two sheets (`own`: their row of LISTED, k: stiffness) move too little in a step to
+    cross each other undetected, and to make an energy error above `little` where they come to touch."""
     way = dt * (fastest[own.a] + fastest[own.b])
     if way > STRIDE * min(bodies[own.a].half[2], bodies[own.b].half[2]):
         return False
@@ -224,7 +226,7 @@ def _slow(bodies, own, k, fastest, dt, little):
 
 @njit(cache=True, error_model="numpy", **BORROWS)
 def _all_slow(tables, regions, fastest, dt, little):
-    """Whether no two boxes of two sheets need a look, whatever pair they are (see _slow)."""
+    """True if _slow holds for any two boxes of two sheets."""
     most, stiffest = 0.0, 0.0
     for k in range(regions.size):
         stiffest = max(stiffest, regions[k].k)
@@ -236,13 +238,12 @@ def _all_slow(tables, regions, fastest, dt, little):
 
 @njit(cache=True, error_model="numpy")
 def swept(work, counts, t, dt, may, slower, rows):
-    """What the near pairs do in a step from t, beyond what is known of its middle: returns the first that
-    comes deeper than it may, or to another side, or -1. The energy that each contact makes or loses goes into
-    rows[:, MISSES] (contacts, 2). `may`: how much each may make (contacts,), 0 for any, and the least of
-    these. `counts`: how many pairs touch in the middle, how many are near.
+    """Checks the near pairs in a step from t, whose middle is known. Returns the first that becomes too deep
+    or changes sides, or -1. Writes the energy error of each contact into rows[:, MISSES] (contacts, 2).
 
-    The states between are looked at as often as a pair could cross unseen, by the law of the contact: none
-    for pairs that are slow for what they could cross, which is nearly all of them.
+    `may`: allowed error of each contact (contacts,), 0 for any, and the least of these. `counts`: numbers of
+    pairs that touch in the middle, and that are near. States within the step are checked closely enough for
+    the law of the contact to see a pair that crosses; nearly all pairs are too slow to need one.
     """
     tables, state, mid = work.tables, work.state, work.mid
     bodies, pairs, shapes = tables.bodies, tables.pairs, tables.shapes
@@ -261,7 +262,7 @@ def swept(work, counts, t, dt, may, slower, rows):
     regions, first = work.search.regions, work.search.first
     slow = _all_slow(tables, regions, mid.fastest[MIDDLE], dt, little)
     for at in range(close):
-        if slow and near[at] >= first:  # so are all that follow
+        if slow and near[at] >= first:  # all that follow are slow, too
             break
         touches = known < count and touched[known] == near[at]
         if touches:

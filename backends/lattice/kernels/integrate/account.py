@@ -1,7 +1,7 @@
-"""What a step dissipates and what drives and loads put in, for each group of parts.
+"""Energy balance of a step for each group of parts: dissipation, and the work of drives and loads.
 
-A group has all parts that may ever touch each other, so energy passes between no two of them, and each has a
-balance of its own: what one group loses cannot hide what another one gains.
+A group has all parts that may ever touch each other. No energy passes between groups, so each has its own
+balance: a loss in one group cannot hide a gain in another one.
 """
 
 from __future__ import annotations
@@ -66,8 +66,8 @@ def _weights(work, t, h, driven):
 
 @njit(cache=True, error_model="numpy", **BORROWS)
 def _contacts(work, t, dt, count, energies, driven):
-    """What contacts and air dissipate, and what they take from drives that answer no force. t: the middle of
-    the step [ms]."""
+    """Adds the dissipation of contacts and air, and the power that they take from prescribed drives. t: the
+    middle of the step [ms]."""
     tables, mid, film, islands = work.tables, work.mid, work.film, work.islands
     bodies, pairs, listed = tables.bodies, tables.pairs, tables.listed
     first = pairs.size - listed.size
@@ -96,8 +96,8 @@ def _contacts(work, t, dt, count, energies, driven):
 
 @njit(cache=True, error_model="numpy", **BORROWS)
 def account(work, t, dt, count, energies, driven):
-    """Adds to the energies (groups, 4) what a step from t dissipated, what drives and loads put in, how much
-    that moved either way, and what numerical damping of joints had of it. `count`: how many pairs touch;
+    """Adds a step from t to the energies (groups, 4): dissipation; work of drives and loads; the magnitude of
+    that work; the part of the dissipation due to numerical damping of joints. `count`: how many pairs touch;
     driven (groups,): scratch."""
     tables, mid, state, islands = work.tables, work.mid, work.state, work.islands
     bodies, axles, f, ub, vb = tables.bodies, tables.shapes.axles, mid.forces, state.ub, state.vb

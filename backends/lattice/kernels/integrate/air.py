@@ -1,15 +1,16 @@
-"""Air between sheets in a step: its pressures, what they do to bodies, and its part of an iteration.
+"""Air between sheets in a step: its pressures, their forces on bodies, and its part of an iteration.
 
-The gaps are those of the middle of the step as its velocities are guessed, but at least half of those as it
-began, and stay so in the step (see mechanics.film). So pressures are linear in the velocities, and their
-forces the slope of a convex function of them: cells of air are points of an iteration with frozen contacts
-(integrate.points), whose forces change together. What one cell would do alone stands in the factored matrix.
+The gaps are frozen in a step (see mechanics.film). They are those of its middle at the guessed velocities,
+but at least half of those at its beginning. So pressures are linear in the velocities, and their forces are
+the slope of a convex function of them. Cells of air are points of an iteration with frozen contacts
+(integrate.points), whose forces change together. The factored matrix contains each cell alone.
 
-At the end of a step velocities are carried to 2 u - v0. What a film stops within a part of a step would ring
-about it, as joints with a damping time do (integrate.damped). So the same is taken off here: Y w, with w
-what v0 lacks of a straight course, Y = X/(1 + X), X = h M^-1 D of the film. With D = C^T A^-1 C, A of
-Reynolds' equation and C what velocities close, Y w = M^-1 C^T s, where (A + h C M^-1 C^T) s = h C w.
-Conjugate gradients find s. Such forces act at the same places on both bodies, so momenta are kept exactly.
+At the end of a step velocities are carried to 2 u - v0. A motion that a film stops within a part of a step
+would oscillate, as with joints that have a damping time (integrate.damped). So the same correction is
+subtracted here: Y w, where w is the deviation of v0 from a straight course, Y = X/(1 + X), and X = h M^-1 D
+of the film. With D = C^T A^-1 C, A of Reynolds' equation and C the closing rates per velocity, Y w =
+M^-1 C^T s, where (A + h C M^-1 C^T) s = h C w. Conjugate gradients find s. These forces act at the same
+places on both bodies, so momenta are conserved exactly.
 """
 
 from __future__ import annotations
@@ -28,8 +29,8 @@ from mdlgen.program.kernel import BORROWS, njit
 
 @njit(cache=True, error_model="numpy", **BORROWS)
 def lay(work, h):
-    """Finds the air of a step: its gaps, areas and matrices at the midpoint, which is h after its begin.
-    Returns whether any acts."""
+    """Sets up the air of a step: gaps, areas and matrices at the midpoint, which is h after its beginning.
+    Returns True if any acts."""
     tables, film, motion = work.tables, work.film, work.mid.motion
     clear_films(film)
     for p in range(tables.pairs.size):
@@ -65,7 +66,7 @@ def _solve(film):
 
 @njit(cache=True, error_model="numpy", **BORROWS)
 def air_forces(work):
-    """Adds what air does to the forces of the midpoint. Returns the power that it takes."""
+    """Adds the forces of air to those of the midpoint. Returns the power that it dissipates."""
     tables, film, motion, f = work.tables, work.film, work.mid.motion, work.mid.forces
     cells, x, lost = film.cells, film.vectors[PRESSURES], 0.0
     close_rates(film, tables.pairs, motion)
@@ -90,13 +91,13 @@ def air_forces(work):
 
 @njit(cache=True, error_model="numpy", **BORROWS)
 def damping_of(film, i):
-    """What a cell alone damps, as it stands in the factored matrix [N ms/mm]."""
+    """Damping constant of a cell alone, as in the factored matrix [N ms/mm]."""
     return CELL_ALONE * film.cells[i].area * film.cells[i].area / film.flow[i, 0]
 
 
 @njit(cache=True, error_model="numpy", **BORROWS)
 def air_along(film, frozen):
-    """How the forces of the points of air change along the direction that points look along."""
+    """Sets the change of the forces of the points of air along the search direction."""
     cells, x = film.cells, film.vectors[PRESSURES]
     for k in range(film.many[0]):
         i = film.head[film.listed[k]]
@@ -118,7 +119,7 @@ def air_along(film, frozen):
 
 @njit(cache=True, error_model="numpy", **BORROWS)
 def _push(work, end, x, push):
-    """What impulses x of all cells push boxes by, at the places `end`."""
+    """Sets push (nodes, 6) to the momenta that impulses x of all cells give boxes at the places `end`."""
     tables, film = work.tables, work.film
     push[:] = 0.0
     for k in range(film.many[0]):
@@ -140,7 +141,7 @@ def _push(work, end, x, push):
 
 @njit(cache=True, error_model="numpy", **BORROWS)
 def _moved(work, push):
-    """Makes velocities of momenta."""
+    """Converts momenta to velocities."""
     tables, r = work.tables, work.mid.motion.r
     for n in range(tables.nodes.size):
         b = tables.nodes[n]
@@ -154,7 +155,7 @@ def _moved(work, push):
 
 @njit(cache=True, error_model="numpy", **BORROWS)
 def _closes(work, end, w, y, times_h):
-    """Adds to y what velocities w (nodes, 6) close of all cells, times a step."""
+    """Adds to y the volumes that velocities w (nodes, 6) close of all cells in the time times_h."""
     tables, film = work.tables, work.film
     for k in range(film.many[0]):
         pair, i = tables.pairs[film.listed[k]], film.head[film.listed[k]]
@@ -173,7 +174,7 @@ def _closes(work, end, w, y, times_h):
 
 @njit(cache=True, error_model="numpy", **BORROWS)
 def _precondition(work, end, h):
-    """Factors A + h C M^-1 C^T, of the latter what each cell has alone."""
+    """Factors A + h C M^-1 C^T, of the latter only the diagonal, cell by cell."""
     tables, film, r = work.tables, work.film, work.mid.motion.r
     for i in range(film.ends.shape[0]):
         for j in range(film.ends.shape[1]):
@@ -209,7 +210,8 @@ def _dot(a, b):
 
 @njit(cache=True, error_model="numpy", **BORROWS)
 def _lacks(work, before, ahead, w):
-    """What the velocities as the step began lack of a straight course to those in its middle, into w."""
+    """Writes into w the deviation of the initial velocities of a step from a straight course to its
+    middle."""
     tables, r = work.tables, work.mid.motion.r
     u, v, l = work.state.u, work.state.v, work.state.l
     for n in range(tables.nodes.size):
@@ -224,8 +226,8 @@ def _lacks(work, before, ahead, w):
 
 @njit(cache=True, error_model="numpy", **BORROWS)
 def air_overshoot(work, before, ahead, dt):
-    """Sets the velocities to take off, Film.off, as damped.overshoot does those of joints. What that takes
-    off is left out here."""
+    """Sets the velocities to subtract, Film.off, as damped.overshoot does those of joints. The latter are
+    already excluded here."""
     film, tables, h = work.film, work.tables, 0.5 * dt
     off, push, end = film.off, film.push, film.place
     s, r, p, q = film.vectors
@@ -233,7 +235,7 @@ def air_overshoot(work, before, ahead, dt):
     if film.many[0] == 0:
         return
     _lacks(work, before, ahead, push)
-    for b in range(tables.bodies.size):  # where they are taken off
+    for b in range(tables.bodies.size):  # places at which they are subtracted
         n = tables.bodies[b].node
         for i in range(3):
             end[b, i] = work.state.x[b, i] + (dt * work.state.u[n, i] if n >= 0 else 0.0)
@@ -266,7 +268,7 @@ def air_overshoot(work, before, ahead, dt):
                 times(film.films[k], film.flow, p, q)
         _push(work, end, p, push)
         _moved(work, push)
-        # both faces are pushed apart: what that opens is as if it closed less
+        # both faces are pushed apart, which reduces the closing rate
         _closes(work, end, push, q, -h)
         part = left / _dot(p, q)
         for i in range(s.size):

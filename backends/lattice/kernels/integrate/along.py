@@ -1,5 +1,5 @@
-"""What contact points and patches whose geometry is frozen make of a change of the velocities: their rates
-along it, their forces and the slope of what is made least."""
+"""Response of contact points and patches with frozen geometry to a change of the velocities: their rates
+along it, their forces, and the slope of the minimised function."""
 
 from __future__ import annotations
 
@@ -28,7 +28,7 @@ from mdlgen.program.kernel import BORROWS, njit
 
 @njit(cache=True, error_model="numpy", **BORROWS)
 def _rate_of(bodies, ends, q, x, change, changeb, matrix):
-    """How the velocity of a point changes where velocities of nodes and of the border change."""
+    """Change of the velocity of a point for a change of the velocities of nodes and border."""
     one, two = ends.one, ends.two
     v = (0.0, 0.0, 0.0)
     if q[KIND] == A_COUPLE:
@@ -60,7 +60,7 @@ def _rate_of(bodies, ends, q, x, change, changeb, matrix):
 
 @njit(cache=True, error_model="numpy", **BORROWS)
 def _along(work, k):
-    """Notes how the velocity of a point changes along the direction, in global axes."""
+    """Stores the change of the velocity of a point along the direction, in global axes."""
     tables, frozen, x = work.tables, work.frozen, work.mid.motion.x
     q, ends = frozen.points[k], frozen.ends[k]
     change, changeb = frozen.vectors[OF_DIRECTION], frozen.border[DIRECTION]
@@ -71,8 +71,8 @@ def _along(work, k):
 
 @njit(cache=True, error_model="numpy", **BORROWS)
 def look_along(work, h):
-    """All points and patches note how their velocities change along the direction: that of the nodes is in
-    global axes in the vectors' OF_DIRECTION. What patches add to the slope at its end is known then."""
+    """Stores the changes of the velocities of all points and patches along the direction, which is in global
+    axes in the vectors' OF_DIRECTION. Evaluates the part of patches in the slope at its end."""
     frozen = work.frozen
     for k in range(frozen.many[0]):
         _along(work, k)
@@ -83,9 +83,9 @@ def look_along(work, h):
 
 @njit(cache=True, error_model="numpy", **BORROWS)
 def pull(work, h, part, g, gb):
-    """Changes the velocities of all points and patches by that part of the change looked along, where the
-    slope was looked at last, and takes off g (6 nodes,), global axes, and gb what their forces have added
-    since the iteration began."""
+    """Changes the velocities of all points and patches by a part of the direction, at which the slope was
+    evaluated last. Subtracts the changes of their forces since the iteration began from g (6 nodes,), in
+    global axes, and from gb."""
     tables, frozen, matrix, x = work.tables, work.frozen, work.matrix, work.mid.motion.x
     bodies, direction, index = tables.bodies, matrix.direction, matrix.unknowns
     pull_patches(work, h, part, g)
@@ -133,7 +133,7 @@ def pull(work, h, part, g, gb):
 
 @njit(cache=True, error_model="numpy", **BORROWS)
 def _points_slope(frozen, h, far):
-    """What points add to the slope, without its factor -h."""
+    """Part of points in the slope, without its factor -h."""
     total = 0.0
     for k in range(frozen.many[0]):
         q = frozen.points[k]
@@ -148,8 +148,8 @@ def _points_slope(frozen, h, far):
 
 @njit(cache=True, error_model="numpy", **BORROWS)
 def slope(work, h, far, looked):
-    """What points and patches add to the slope of the function that is made least, along the change looked
-    along, at that part of it; `looked`: at its end, where patches have just been looked along."""
+    """Part of points and patches in the slope of the minimised function, at the part `far` of the direction;
+    `looked`: at its end, where look_along has just evaluated the patches."""
     frozen = work.frozen
     if not looked:
         frozen.of_patches[0] = patches_slope(work, h, far)

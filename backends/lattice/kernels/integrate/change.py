@@ -14,8 +14,8 @@ from mdlgen.program.kernel import BORROWS, njit
 
 @njit(cache=True, error_model="numpy", **BORROWS)
 def greatest(work, res, resb, control):
-    """The greatest change of a velocity [mm/ms], of turning times the size of a box or the radius of a
-    roller, times `strict` of its part. Round-off, which is below pace[FLOOR], is no change."""
+    """Greatest change of a velocity [mm/ms], times `strict` of its part. Angular velocities count times the
+    size of a box or the radius of a roller. Changes below pace[FLOOR] are round-off and count as zero."""
     bodies, nodes, motion = work.tables.bodies, work.tables.nodes, work.mid.motion
     boxes, islands, floor = work.tables.boxes, work.islands, control.pace[FLOOR]
     label, strict = work.free.label, islands.strict
@@ -42,8 +42,8 @@ def greatest(work, res, resb, control):
 
 @njit(cache=True, error_model="numpy", **BORROWS)
 def greatest_of_free(work, res, floor):
-    """The same of boxes whose sheets hang on nothing and touch nothing alone: a contact is solved for to what
-    the step may leave, so no iteration brings sheets that touch to less."""
+    """The same for boxes of sheets that are free and touch nothing. Sheets that touch cannot converge as far,
+    since the contact solve ends at the limit of the step."""
     tables, free, strict = work.tables, work.free, work.islands.strict
     change = 0.0
     for n in range(tables.nodes.size):
@@ -59,7 +59,7 @@ def greatest_of_free(work, res, floor):
 
 @njit(cache=True, error_model="numpy", **BORROWS)
 def fastest(tables, u, found):
-    """How fast any place of a free box is at most (bodies,)."""
+    """Sets found (bodies,) to a bound on the speed of any place of each free box [mm/ms]."""
     for n in range(tables.nodes.size):
         b = tables.nodes[n]
         rate, spin = (u[n, 0], u[n, 1], u[n, 2]), (u[n, 3], u[n, 4], u[n, 5])
@@ -68,7 +68,7 @@ def fastest(tables, u, found):
 
 @njit(cache=True, error_model="numpy", **BORROWS)
 def take_off(state, res, resb):
-    """Takes a change off the velocities."""
+    """Subtracts a change from the velocities."""
     u, ub = state.u, state.ub
     for n in range(u.shape[0]):
         for i in range(6):

@@ -1,13 +1,13 @@
-"""An iteration of a step's equations where contacts stand in its matrix: a convex problem.
+"""An iteration of a step's equations where contacts are in its matrix: a convex problem.
 
-With the geometry of contacts frozen, and friction limited by the normal forces as the iteration begins, the
-change d of the velocities makes a convex function least (integrate.points): half d A d, A being masses and
-bushings, and res d, and what the points add. Newton's method finds it with a factored matrix of an earlier
-state, and goes along each direction as far as the function falls. Contacts that open and close, and friction
-that turns, cannot make it go back and forth, as they do without that search (Castro et al., arXiv
-2110.10107).
+The geometry of contacts is frozen, and friction is limited by the normal forces at the beginning of the
+iteration. Then the change d of the velocities minimises a convex function (integrate.points): half d A d,
+with A the masses and bushings, plus res d, plus the functions of the points. Newton's method minimises it
+with a factored matrix of an earlier state and a line search along each direction. Without that search,
+contacts that open and close, and friction that changes its direction, can make the iterations oscillate
+(Castro et al., arXiv 2110.10107).
 
-The next iteration begins with all forces as they are there, so what was frozen leaves no error.
+The next iteration evaluates all forces again, so the frozen geometry leaves no error.
 """
 
 from __future__ import annotations
@@ -76,8 +76,8 @@ from mdlgen.program.kernel import BORROWS, njit
 
 @njit(cache=True, error_model="numpy")
 def _make_matrix(work, h, lag, renew):
-    """The matrix of the frozen points, factored; `renew`: masses and bushings too. Returns False where it is
-    not regular."""
+    """Factors the matrix with the frozen points; `renew`: recompute masses and bushings, too. Returns False
+    where it is singular."""
     tables, matrix, motion = work.tables, work.matrix, work.mid.motion
     a, b, d = matrix.band, matrix.border, matrix.corner
     if renew:
@@ -110,8 +110,8 @@ def _make_matrix(work, h, lag, renew):
 
 @njit(cache=True, error_model="numpy", **BORROWS)
 def _how_far(work, h, falls, linear, square, level):
-    """The part of a direction to go along. falls: the slope where it begins; linear + part square: what
-    masses and bushings have of it there; level: see SLOPE_WHOLE."""
+    """Part of a direction that the line search takes. falls: slope at its beginning; linear + part square:
+    slope of the masses and bushings at `part` of it; level: see SLOPE_WHOLE."""
     low, high, at_low = 0.0, 1.0, falls
     at_high = linear + square + slope(work, h, 1.0, True)
     if abs(at_high) <= level * abs(falls):
@@ -148,8 +148,8 @@ def _dot(a, b):
 
 @njit(cache=True, error_model="numpy", **BORROWS)
 def _gradient(work, h, axes, part):
-    """Goes that part of the direction, and finds the slope of the function in all unknowns there: the
-    vectors' GRADIENT."""
+    """Takes that part of the direction, and evaluates the gradient of the function there: the vectors'
+    GRADIENT."""
     frozen, matrix, nodes = work.frozen, work.matrix, work.tables.nodes
     res, resb, own = frozen.vectors[RESIDUAL], frozen.border[RESIDUAL], matrix.own
     g, gb = frozen.vectors[GRADIENT], frozen.border[GRADIENT]
@@ -164,7 +164,7 @@ def _gradient(work, h, axes, part):
 
 @njit(cache=True, error_model="numpy", **BORROWS)
 def _product(work):
-    """What masses and bushings make of the direction, sheet by sheet."""
+    """Multiplies the direction by the matrix of masses and bushings, sheet by sheet."""
     matrix, vectors = work.matrix, work.frozen.vectors
     spans = matrix.couplings.colouring.spans
     for sheet in range(spans.shape[0]):
@@ -175,8 +175,8 @@ def _product(work):
 
 @njit(cache=True, error_model="numpy", **BORROWS)
 def _direction(work, axes, h):
-    """The points look along the direction, and what masses and bushings make of it is worked out. Returns
-    what these have of the slope along it where it begins, and for 1 of it more."""
+    """Evaluates points, masses and bushings along the direction. Returns the slope of the latter at its
+    beginning, and their curvature."""
     frozen, matrix = work.frozen, work.matrix
     p, pb, product = frozen.vectors[DIRECTION], frozen.border[DIRECTION], frozen.vectors[OF_DIRECTION]
     copy(product, p)
@@ -193,8 +193,8 @@ def _direction(work, axes, h):
 
 @njit(cache=True, error_model="numpy", **BORROWS)
 def _cured(work, h, axes, part, least):
-    """Whether a change that goes on by that part of the direction takes enough of the momentum of each sheet
-    and roller that would move by more than `least` if it were free (see momentum.let_go)."""
+    """True if a change that ends at that part of the direction removes enough residual momentum. Checks each
+    sheet and roller that would move by more than `least` if it were free (see momentum.let_go)."""
     g, lets = work.frozen.vectors[GRADIENT], work.free.lets
     _gradient(work, h, axes, part)
     turn_nodes(work.tables.nodes, axes, g, False)
@@ -207,8 +207,8 @@ def _cured(work, h, axes, part, least):
 
 @njit(cache=True, error_model="numpy", **BORROWS)
 def _say_enough(work, limit):
-    """Sets what linear solves may leave in each sheet, as the square of its residual that they have: its mass
-    times the square of the velocity which they may leave. Of some sheets a step may leave less."""
+    """Sets the squared residual at which linear solves of each sheet end: its mass times the square of the
+    allowed error of its velocity. That error is smaller for sheets of slow islands."""
     boxes, colours = work.tables.boxes, work.matrix.couplings.colouring
     for sheet in range(colours.enough.size):
         low, high = colours.spans[sheet, BEGIN], colours.spans[sheet, END]
@@ -220,10 +220,10 @@ def _say_enough(work, limit):
 
 @njit(cache=True, error_model="numpy")
 def solve_convex(work, t, h, lag, counts, limit, control, renew, whole):
-    """Makes of the residual, in box axes, the change of velocities that is to be taken off. Returns in how
-    many iterations; 0: it could not, -1: it did not come to its end. counts: how many pairs touch, how many
-    are near; `renew`: a factor has masses and bushings anew; `whole`: not even a first direction that is gone
-    along wholly is enough."""
+    """Replaces the residual, in box axes, by the change of velocities that is to be subtracted. Returns the
+    number of iterations; 0: it failed, -1: it did not converge. counts: how many pairs touch, how many are
+    near; `renew`: a new factor recomputes masses and bushings; `whole`: the problem is solved to its end,
+    even where the first direction is taken wholly."""
     tables, matrix, frozen = work.tables, work.matrix, work.frozen
     factored, counters = control.factored, control.counters
     z, zb, axes = matrix.res, matrix.resb, work.condensed.axes
@@ -274,7 +274,7 @@ def solve_convex(work, t, h, lag, counts, limit, control, renew, whole):
         counters[SOLVES] += 1
         factored[SPENT] += 0.0 if begins and iteration == 0 else 1.0
         solve_coupled(matrix, LINEAR_LEFT_WITH_AIR if air else LINEAR_LEFT)
-        # conjugate directions, by Polak and Ribiere: they make up for a factor of an earlier state
+        # conjugate directions, by Polak and Ribiere: they compensate for a factor of an earlier state
         square = _dot(g, z) + _dot(gb, zb)
         turn = max(0.0, (square - crossing) / along) if iteration > 0 and not made and along > 0.0 else 0.0
         along = square
@@ -293,7 +293,7 @@ def solve_convex(work, t, h, lag, counts, limit, control, renew, whole):
             gathered = True
         falls = _dot(g, p) + _dot(gb, pb)
         if not falls < 0.0:
-            # a factor of an earlier state may lead up
+            # with a factor of an earlier state the function may rise along the direction
             if made and iteration == 0:
                 return 0
             if made:
@@ -307,7 +307,7 @@ def solve_convex(work, t, h, lag, counts, limit, control, renew, whole):
             change[i] += part * p[i]
         for i in range(pb.size):
             changeb[i] += part * pb[i]
-        # a part of a direction may be small while what is left is not: it counts as a whole
+        # a small part of a direction does not mean a small residual: the whole direction is measured
         rate = moved / before
         first = not whole and iteration == 0 and part == 1.0 and moved <= FIRST_DIRECTION * limit
         converged = first or moved <= CONVEX_ROUGH * limit

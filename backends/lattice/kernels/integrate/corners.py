@@ -1,4 +1,4 @@
-"""What Poisson's effect adds to the matrix of a step: couplings of the joints around corners."""
+"""Part of Poisson's effect in the matrix of a step: couplings of the joints around corners."""
 
 from __future__ import annotations
 
@@ -17,8 +17,8 @@ def _outer(times, a, b):
 
 @njit(cache=True, error_model="numpy")
 def _couple(a, slots, one, two, stretch, bend):
-    """Adds what the end of a joint does to the end of another one, and the other way round. Of each end: its
-    node, its arm, its sign, the axis about which the joint bends, and the one that it stretches along."""
+    """Adds the coupling between the ends of two joints, in both directions. Each end is (node, arm, sign,
+    axis about which the joint bends, axis along which it stretches)."""
     n, p, s, m, e = one
     k, q, t, o, d = two
     if n < 0 or k < 0:
@@ -31,7 +31,7 @@ def _couple(a, slots, one, two, stretch, bend):
 
 @njit(cache=True, error_model="numpy")
 def _ends(joint, bodies, x, r, along_x):
-    """Both ends of a joint, as `_couple` has them."""
+    """Both ends of a joint, in the form that `_couple` takes."""
     middle, _theta, gap, ra, rb = standing(joint, x, r)
     about, along = axes_of(middle, along_x)
     a = bodies[joint.a].node if joint.a >= 0 else -1

@@ -1,15 +1,16 @@
 """Velocities at the end of a step where joints have a damping time of their own.
 
-The midpoint rule carries 2 u - v0 on. Where damping stops a motion within a part of a step, u is next to what
-the forces leave of it, so that v changes sign about it from step to step and hardly dies. Positions and
-contacts see u alone and are right; the velocities at the end of the step, which are reported, would not be.
+The midpoint rule carries the velocity v0 to 2 u - v0. Where damping stops a motion within a part of a step, u
+is nearly its final value, and v alternates about it from step to step and hardly decays. Positions and
+contacts depend on u alone and are right; the velocities at the end of the step, which are reported, would not
+be.
 
-So of what v0 lacks of a straight course, w = u - v0 - (u - u') dt/(dt + dt'), with u' and dt' of the step
-before, the part Y w is taken off with Y = X/(1 + X), X = h M^-1 C of these joints. Where a motion is resolved
-w is of second order in the step and Y of first, so the rule stays of second order; where it is not, v comes
-to the straight course. That is stable at any step: oscillators of any frequency and damping time have a
-spectral radius below 1. What it takes would have been dissipated by the same joints within the step. C does
-not see rigid motion, so linear and angular momentum of a sheet are kept.
+The deviation of v0 from a straight course is w = u - v0 - (u - u') dt/(dt + dt'), with u' and dt' of the step
+before. The part Y w of it is subtracted, with Y = X/(1 + X) and X = h M^-1 C of these joints. For a resolved
+motion w is of second order in the step and Y of first, so the rule stays of second order; otherwise v
+approaches the straight course. That is stable at any step: oscillators of any frequency and damping time have
+a spectral radius below 1. The energy that is removed is one that the same joints would dissipate within the
+step. Rigid motion has no part in C, so linear and angular momentum of a sheet are conserved.
 """
 
 from __future__ import annotations
@@ -26,9 +27,9 @@ from mdlgen.backends.lattice.kernels.tuning import DAMPERS_LAST
 from mdlgen.mechanics.vector import back, mat, rotate
 from mdlgen.program.kernel import BORROWS, njit
 
-MADE_FOR, AGE = 0, 1  # of Damped.made
-# Rows of Damped.vectors: the momentum that lacks of a straight course, in box axes, and of that what the
-# dampers leave.
+MADE_FOR, AGE = 0, 1  # columns of Damped.made
+# Rows of Damped.vectors: momentum of the deviation from a straight course, in box axes, and the part of it
+# that remains after the dampers.
 PUSH, LEFT = 0, 1
 
 
@@ -71,7 +72,7 @@ def _turned(nodes, r, x, inward):
 
 @njit(cache=True, error_model="numpy", **BORROWS)
 def _leave(work):
-    """What dampers leave of the momentum of all sheets."""
+    """Computes the momentum of all sheets that remains after the dampers, LEFT, from PUSH."""
     spans, damped = work.matrix.couplings.colouring.spans, work.damped
     copy(damped.vectors[LEFT], damped.vectors[PUSH])
     for sheet in range(spans.shape[0]):
@@ -82,7 +83,7 @@ def _leave(work):
 
 @njit(cache=True, error_model="numpy")
 def overshoot(work, before, ahead, dt):
-    """Sets the velocities to take off, Damped.off, of a step that is solved and not carried on yet. `before`
+    """Sets the velocities to subtract, Damped.off, of a step that is solved but not yet carried on. `before`
     (nodes, 6) are the velocities in the middle of the step before, `ahead` is dt/(dt + dt')."""
     bodies, nodes = work.tables.bodies, work.tables.nodes
     joints, band, made, off = work.damped.joints, work.damped.band, work.damped.made, work.damped.off
@@ -117,8 +118,8 @@ def overshoot(work, before, ahead, dt):
             push[6 * n + i] = push[6 * n + i] / mass - left[6 * n + i]
             push[6 * n + 3 + i] = push[6 * n + 3 + i] / j[i] - left[6 * n + 3 + i]
     _turned(nodes, rm, push, False)
-    # the factor is of an earlier shape, which has other rigid motions; and it is at the end of the step that
-    # these velocities are taken off
+    # the factor is of an earlier shape, which has other rigid motions; and these velocities are subtracted at
+    # the end of the step
     work.free.residual[:] = 0.0
     copy(end, xm)
     for n in range(nodes.size):
@@ -132,8 +133,8 @@ def overshoot(work, before, ahead, dt):
 
 @njit(cache=True, error_model="numpy", **BORROWS)
 def take_off(work, off, energies):
-    """Takes the velocities `off` from those that were carried on. The energy that goes with them is
-    dissipated: energies (groups, 4)."""
+    """Subtracts the velocities `off` from those at the end of a step, and adds their energy to the dissipated
+    one: energies (groups, 4)."""
     bodies, nodes, islands, label = work.tables.bodies, work.tables.nodes, work.islands, work.free.label
     rm, r, v, l = work.mid.motion.r, work.state.r, work.state.v, work.state.l
     for n in range(nodes.size):

@@ -1,10 +1,10 @@
-"""The velocities that a step begins its iterations with, guessed from those of the steps before.
+"""Guesses of the velocities with which the iterations of a step begin, from those of earlier steps.
 
-Three guesses are tried on the steps that were taken: a line through the last two velocities, half of the
-way along it, and a parabola through the last three. Of smooth motion a parabola misses a tenth of what a line
-does. Of motion that flutters from step to step it misses half as much again, and half of a line's way misses
-least. Each sheet goes on by the guess that has missed its last steps by least. A guess costs or saves
-iterations, and has no part in where they end.
+Three guesses are compared on past steps: a line through the last two velocities, half of that extrapolation,
+and a parabola through the last three. For smooth motion the error of the parabola is a tenth of that of the
+line. For motion that flutters from step to step it is half as large again, and half of the extrapolation is
+best. Each sheet uses the guess with the least error in its last steps. A guess changes the number of
+iterations, not their result.
 """
 
 from __future__ import annotations
@@ -25,8 +25,8 @@ from mdlgen.program.kernel import BORROWS, njit
 
 @njit(cache=True, error_model="numpy", forceinline=True)
 def _ways(spans, dt):
-    """What a guess adds to the velocity of the last step for the middle of the next one, of dt [ms]: on a
-    line so much of how the last two differ; on a parabola so much of that, and of how the two before do."""
+    """Coefficients of the guesses for the middle of the next step, of dt [ms]. Returns that of the line, for
+    the difference of the last two velocities, and two of the parabola, for that and the difference before."""
     if spans[BETWEEN] == 0.0:
         return 0.0, (0.0, 0.0)
     ahead, between, earlier = 0.5 * (dt + spans[LAST_STEP]), spans[BETWEEN], spans[EARLIER]
@@ -39,15 +39,15 @@ def _ways(spans, dt):
 
 @njit(cache=True, error_model="numpy", forceinline=True)
 def _best(missed):
-    """Which guess has missed a sheet by least."""
+    """Guess with the least error for a sheet."""
     best = LINE if missed[LINE] <= missed[HALF] else HALF
     return PARABOLA if missed[PARABOLA] < SMOOTH * missed[best] else best
 
 
 @njit(cache=True, error_model="numpy", **BORROWS)
 def guess_velocities(work, history, dt, any_way):
-    """Makes of the velocities of the last step, state.u and state.ub, those in the middle of the next one, of
-    dt [ms], along lines where a sheet may not go `any_way`."""
+    """Replaces the velocities of the last step, state.u and state.ub, by guesses for the middle of the next
+    one, of dt [ms]; only along lines where not `any_way`."""
     u, ub, label = work.state.u, work.state.ub, work.free.label
     line, parabola = _ways(history.spans, dt)
     sheet, way = -1, (line, 0.0)
@@ -65,7 +65,7 @@ def guess_velocities(work, history, dt, any_way):
 
 @njit(cache=True, error_model="numpy", **BORROWS)
 def add_to_history(work, history, dt, last, last_b):
-    """Notes what guesses have missed of a step of dt [ms] that was taken, and goes on to the next one; `last`
+    """Adds the errors of the guesses for a step of dt [ms] that was taken, and stores its velocities; `last`
     (nodes, 6), `last_b` (border,): velocities of the step before."""
     boxes, label, u = work.tables.boxes, work.free.label, work.state.u
     missed, spans = history.missed, history.spans
@@ -95,5 +95,5 @@ def add_to_history(work, history, dt, last, last_b):
 
 @njit(cache=True, error_model="numpy", **BORROWS)
 def forget(history):
-    """Nothing is guessed of the next step: it begins with the velocities of the last one."""
+    """Drops the history: the next step begins with the velocities of the last one."""
     history.spans[BETWEEN] = 0.0

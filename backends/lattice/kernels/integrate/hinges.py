@@ -1,7 +1,7 @@
 """Joints that yield in bending, in the steps of the midpoint rule: see mechanics.plastic.
 
-A step begins with the plastic rotations that the last accepted step left. Iterations, and steps that are
-taken again, do not change them.
+A step begins with the plastic rotations of the last accepted step. Iterations, and steps that are repeated,
+do not change them.
 """
 
 from __future__ import annotations
@@ -22,7 +22,7 @@ def _frames(joint, r):
 
 @njit(cache=True, error_model="numpy", **BORROWS)
 def begin_hinges(tables, r):
-    """Notes the rotations that a step begins with; r: of the bodies (bodies, 9)."""
+    """Stores the rotations at the beginning of a step; r: rotations of the bodies (bodies, 9)."""
     for k in range(tables.hinges.size):
         hinge = tables.hinges[k]
         _, _, fa, fb = _frames(tables.joints[hinge.joint], r)
@@ -38,8 +38,8 @@ def _couples(f, a, b, torque):
 
 @njit(cache=True, error_model="numpy", **BORROWS)
 def hinge_forces(tables, r, f):
-    """Adds to the forces f (bodies, 6) what hinges add to their joints, with the rotations r in the middle of
-    a step."""
+    """Adds the contribution of hinges to the forces f (bodies, 6), at the rotations r in the middle of a
+    step."""
     for k in range(tables.hinges.size):
         hinge = tables.hinges[k]
         a, b, fa, fb = _frames(tables.joints[hinge.joint], r)
@@ -59,7 +59,7 @@ def _sheet_of(runs, joint):
 
 @njit(cache=True, error_model="numpy", **BORROWS)
 def end_hinges(work, energies):
-    """Ends an accepted step: changes plastic rotations, and adds what that dissipates to energies
+    """Ends an accepted step: updates plastic rotations, and adds the energy that they dissipate to energies
     (groups, 4)."""
     tables, group = work.tables, work.islands.group
     for k in range(tables.hinges.size):
@@ -73,8 +73,8 @@ def end_hinges(work, energies):
 
 @njit(cache=True, error_model="numpy", **BORROWS)
 def hinge_energies(tables, group, r, energies):
-    """Adds to the energies (groups, 3) what hinges store, less what their joints would without them, with the
-    rotations r at the end of a step; `group`: of each part."""
+    """Adds the stored energy of hinges to the energies (groups, 3), less that of their joints without them,
+    at the rotations r at the end of a step; `group`: group of each part."""
     for k in range(tables.hinges.size):
         hinge = tables.hinges[k]
         _, _, fa, fb = _frames(tables.joints[hinge.joint], r)
@@ -85,9 +85,9 @@ def hinge_energies(tables, group, r, energies):
 
 @njit(cache=True, error_model="numpy", **BORROWS)
 def hinges_into(tables, h, r, a, slots):
-    """Takes h^2 times what yielding takes off the stiffness of joints from the band, so that it has the
-    derivative of the moments of the step: k H/(k + H) where a hinge yields. r: rotations in the middle of
-    the step; `slots`: see state.Matrix."""
+    """Reduces the band by h^2 times the decrease of stiffness due to yielding. Then it has the derivative of
+    the moments of the step: k H/(k + H) where a hinge yields. r: rotations in the middle of the step;
+    `slots`: see state.Matrix."""
     bodies, images = tables.bodies, tables.images
     none = (0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
     for k in range(tables.hinges.size):
@@ -100,7 +100,7 @@ def hinges_into(tables, h, r, a, slots):
         axis = couple(fa, fb, hinge.axis, 1.0)
         less = h * h * hinge.k * hinge.k / (hinge.k + hinge.hardening)
         if joint.mirrored != 0:
-            # the far end turns as this one does, seen in the mirror, see tangent.joints_into
+            # the far end turns as the mirror image of this one, see tangent.joints_into
             n = three(images[0].normal)
             axis = sub(axis, scale(dot(n, axis), n))
             less *= 2.0

@@ -1,4 +1,4 @@
-"""Many steps: their size, what they cost in energy, and what contacts do in them."""
+"""Integration over many steps: their size, their energy balance, and the history of contacts."""
 
 from __future__ import annotations
 
@@ -87,15 +87,15 @@ DONE, STOPPED, LEFT, DEEP, STRETCHED, CROWDED, WOKEN = 0, 1, 2, 3, 4, 5, 6
 
 
 class Last(NamedTuple):
-    """Velocities before a step, which it goes back to where it is taken again."""
+    """Velocities before a step, which are restored where it is repeated."""
 
-    u: np.ndarray  # (nodes, 6)
-    ub: np.ndarray  # (border,)
+    u: np.ndarray  # (nodes, 6).
+    ub: np.ndarray  # (border,).
 
 
 @njit(cache=True, error_model="numpy", **BORROWS)
 def _deep(tables, mid, count):
-    """The pair that is deeper than it may be in the middle of a step, or -1."""
+    """Pair that is too deep in the middle of a step, or -1."""
     pairs, listed = tables.pairs, tables.listed
     first = pairs.size - listed.size
     for k in range(count):
@@ -114,7 +114,7 @@ def _deep(tables, mid, count):
 
 @njit(cache=True, error_model="numpy", **BORROWS)
 def _watch(tables, search, mid, count, t, dt, kept, asleep):
-    """Adds what contacts did in a step from t to a Kept; those of which nothing is awake do as before."""
+    """Adds the contacts of a step from t to a Kept; those whose sides both sleep hold their values."""
     rows, marks = kept
     pairs, listed, regions = tables.pairs, search.listed, search.regions
     for row in range(rows.shape[0]):
@@ -151,8 +151,8 @@ def _watch(tables, search, mid, count, t, dt, kept, asleep):
 
 @njit(cache=True, error_model="numpy", **BORROWS)
 def _begun(rows, part):
-    """What each row of the contacts does where a step begins, a `part` of the way from the middle of the
-    step before, which stands in the columns of what begins, to that of this step."""
+    """Interpolates each row of the contacts at the beginning of a step, at `part` of the time from the middle
+    of the step before to that of this one. The columns BEGUN have the values of the former."""
     for row in range(rows.shape[0]):
         rows[row, FORCE_BEGUN] += part * (rows[row, FORCE_NOW] - rows[row, FORCE_BEGUN])
         for i in range(TURNING):
@@ -172,7 +172,7 @@ def _outside(x, low, high):
 
 @njit(cache=True, error_model="numpy", **BORROWS)
 def _speed(work, mass):
-    """Root mean square speed of all sheets, of that mass with those that sleep; 0 where there is none."""
+    """Root mean square speed of all sheets; `mass` includes those that sleep. 0 where there is none."""
     boxes, u, moving = work.tables.boxes, work.state.u, 0.0
     for n in range(boxes.shape[0]):
         moving += boxes[n, OWN_MASS] * (u[n, 0] * u[n, 0] + u[n, 1] * u[n, 1] + u[n, 2] * u[n, 2])
@@ -181,7 +181,7 @@ def _speed(work, mass):
 
 @njit(cache=True, error_model="numpy", **BORROWS)
 def _mass(work):
-    """Of all sheets, with those that sleep [g]."""
+    """Mass of all sheets, including those that sleep [g]."""
     bodies, mass = work.tables.bodies, 0.0
     for n in work.tables.nodes:
         mass += bodies[n].mass
@@ -192,19 +192,19 @@ def _mass(work):
 
 @njit(cache=True, error_model="numpy", **BORROWS)
 def _share(dt, spans):
-    """The part of the way from the middle of the step before to that of this one that is in this step; 0:
+    """Part of the time from the middle of the step before to that of this one that lies in this step; 0:
     there is no step before."""
     return dt / (dt + spans[LAST_STEP]) if spans[LAST_STEP] > 0.0 else 0.0
 
 
 @njit(cache=True, error_model="numpy")
 def _predict(work, dt, control, last):
-    """Guesses the velocities of a step from those of steps before, `last` of which are kept, and searches for
-    near boxes where some may have come near since. Returns whether there is room for these."""
+    """Guesses the velocities of a step from those of steps before, starting from `last`. Searches for near
+    boxes where some may have come near since. Returns False if they exceed the capacity."""
     tables, state, mid, search = work.tables, work.state, work.mid, work.search
     copy(last.u, state.u)
     copy(last.ub, state.ub)
-    # how far off a guess by a line is tells how fast velocities change, where steps go by that
+    # where the step is chosen by missed guesses, the error of a line measures how fast velocities change
     guess_velocities(work, control.history, dt, control.pace[MISS] == 0.0)
     if control.pace[ANEW] != 0.0:
         control.factored[STALE] = 1.0
@@ -223,10 +223,10 @@ def _predict(work, dt, control, last):
 
 @njit(cache=True, error_model="numpy")
 def _solve(work, t, dt, tolerance, control, level):
-    """Solves for the velocities of a step that was halved so many times. Returns whether it converged."""
+    """Solves for the velocities of a step after `level` halvings. Returns True if it converged."""
     pace = control.pace
-    # a halved step's guess is the better, and what it may leave must fall as fast; where sheets lie on each
-    # other iterations do not come as far
+    # the guess of a halved step is better, so its limit must fall as fast; where sheets lie on each other
+    # iterations cannot converge as far
     finer = 0.25**level if work.search.regions.size == 0 else 1.0
     greatest, pace[FLOOR] = greatest_scale(work.islands), round_off(work, 0.5 * dt)
     pace[LOOSE] = max(greatest * tolerance * finer, pace[FLOOR])
@@ -236,9 +236,9 @@ def _solve(work, t, dt, tolerance, control, level):
 
 @njit(cache=True, error_model="numpy")
 def _judge(work, t, dt, control, last, stored, allowed):
-    """Looks for what a step that converged may not do. Returns (the pair that is too deep, -1: none is; how
-    much more energy contacts made or lost than they may; whether the step stands: boxes are where pairs were
-    searched for them). `stored`, `allowed`: scratch of each contact."""
+    """Checks a step that converged. Returns (pair that is too deep, or -1; energy error of contacts relative
+    to the allowed one; True if the step is valid, since boxes are within the range of the last search).
+    `stored`, `allowed`: scratch of each contact."""
     tables, counters, most = work.tables, control.counters, control.pace[MADE]
     if work.search.regions.size > 0 and strayed(tables.bodies, work.search, work.state.x, work.state.u, dt):
         return -1, 0.0, False
@@ -254,8 +254,8 @@ def _judge(work, t, dt, control, last, stored, allowed):
 
 @njit(cache=True, error_model="numpy")
 def _accept(work, t, dt, control, last, first, driven):
-    """Carries a step on, and books what it did; `first`: it is the first one of a call of `run`, where what
-    contacts do as it begins is noted; `driven`: scratch of each group."""
+    """Carries an accepted step to its end, and adds its energies and contacts. `first`: it is the first one
+    of a call of `run`, so contacts at its beginning are stored; `driven`: scratch of each group."""
     tables, state, mid, counters = work.tables, work.state, work.mid, control.counters
     energies, spans, sheets = control.energies, control.history.spans, work.search.regions.size > 0
     touching, close = int(counters[TOUCHING]), int(counters[CLOSE])
@@ -292,8 +292,8 @@ def _accept(work, t, dt, control, last, first, driven):
 
 @njit(cache=True, error_model="numpy", **BORROWS)
 def _next_level(work, level, iterations, missed, made, even):
-    """How often the next step is halved, after one that took so many iterations and missed its guess, and
-    made energy, by these parts of what it may; `even`: the next one may be twice as long."""
+    """Number of halvings of the next step, from the `iterations` of the last one. `missed`, `made`: its
+    missed guess and its energy error, relative to their limits; `even`: the next may be twice as long."""
     hard, easy = (HARD_WITH_AIR, EASY_WITH_AIR) if work.film.many[0] > 0 else (HARD, EASY)
     if (missed > 1.0 or made > 1.0 or iterations > hard) and level < FINEST:
         return level + 1
@@ -303,7 +303,7 @@ def _next_level(work, level, iterations, missed, made, even):
 
 @njit(cache=True, error_model="numpy", **BORROWS)
 def _ends(work, deep, counters):
-    """DONE, or why a run ends with the state that it has; `deep`: see _judge."""
+    """DONE, or the reason why a run ends with its present state; `deep`: see _judge."""
     tables, state = work.tables, work.state
     outside = _outside(state.x, work.bounds.low, work.bounds.high)
     if outside >= 0:
@@ -324,10 +324,9 @@ def _ends(work, deep, counters):
 def run(work, t, steps, tolerance, control):
     """Takes the steps `steps` (n,) [ms] from time t. Returns (status, time reached).
 
-    A step is halved, up to HALVINGS_MOST times, where it does not converge, or where the velocities miss
-    their guess by more than pace[MISS]. `tolerance` and that are relative to the speed of each island. Nor
-    may the contacts of an island make or lose more in one step than pace[MADE] of its energy. See
-    integrate.islands.
+    A step is halved, up to HALVINGS_MOST times, in three cases: it does not converge; velocities miss their
+    guess by more than pace[MISS]; the energy error of an island's contacts exceeds pace[MADE] of its energy.
+    `tolerance` and pace[MISS] are relative to the speed of each island. See integrate.islands.
     Before a step that would move a box that sleeps the status is WOKEN, and the box is counters[WORST].
     """
     state, rows, counters, pace = work.state, work.kept.rows, control.counters, control.pace
@@ -357,7 +356,7 @@ def run(work, t, steps, tolerance, control):
                 return WOKEN, t
             missed, deep, made = 0.0, -1, 0.0
             if solved:
-                # as a part of what it may miss
+                # relative to the limit
                 missed = missed_guess(work, guess, pace[FLOOR]) / (pace[MISS] if pace[MISS] > 0.0 else 1e300)
                 deep, made, solved = _judge(work, t, dt, control, last, stored, allowed)
             if not solved or ((missed > TAKEN_AGAIN or made > TAKEN_AGAIN or deep >= 0) and level < FINEST):
@@ -365,7 +364,7 @@ def run(work, t, steps, tolerance, control):
                 copy(state.ub, last.ub)
                 if level == HALVINGS_MOST:
                     return STOPPED, t
-                # what is made of energy goes with the step to the power of 5/2, or 3
+                # the energy error scales with the step to the power of 5/2, or 3
                 halvings = math.ceil(math.log2(made) / 2.5) if made > TAKEN_AGAIN else 1
                 pace[LEVEL] = min(
                     level + max(1, halvings),

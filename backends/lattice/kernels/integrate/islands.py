@@ -1,12 +1,12 @@
-"""Islands: parts that touch, and the speed and energy by which a step of each is measured.
+"""Islands of parts that touch, and the speed and energy of each that scale the errors of a step.
 
 A part is a sheet, or a body that turns or slides. Parts that touch form an island, since a motion passes from
-one to the other. What is fixed or driven passes none: two sheets on one plate are two islands. A driven
+one to the other. Fixed and driven bodies transmit none: two sheets on one plate are two islands. A driven
 surface counts with its speed where it touches, because it gives that speed to the sheet.
 
-What iterations may leave in a part, what its guess may miss and what its contacts may make of energy are
-parts of the speed and the energy of its island in the last step. So no fast body elsewhere, and no earlier
-motion, makes a step of a slow one coarser.
+A part has limits on changes in the last iteration, on missed guesses and on the energy error of contacts.
+They are relative to the speed and the energy of its island in the last step. So no fast body elsewhere, and
+no earlier motion, makes a step of a slow one coarser.
 """
 
 from __future__ import annotations
@@ -40,7 +40,7 @@ def _top(top, part):
 
 @njit(cache=True, error_model="numpy", **BORROWS)
 def _speeds_of_sheets(work):
-    """Kinetic energies of sheets, and the root mean square speeds of all their matter."""
+    """Computes kinetic energies of sheets, and their root mean square speeds by mass."""
     boxes, nodes, label = work.tables.boxes, work.tables.nodes, work.free.label
     r, u, islands = work.mid.motion.r, work.state.u, work.islands
     for n in range(nodes.size):
@@ -57,7 +57,7 @@ def _speeds_of_sheets(work):
 
 @njit(cache=True, error_model="numpy", **BORROWS)
 def _speeds_of_moving(work, t):
-    """The same of bodies that turn or slide: speeds are those of the rim and of the slide together."""
+    """The same for bodies that turn or slide: the speed of the rim plus that of the slide."""
     bodies, x, ub, islands = work.tables.bodies, work.mid.motion.x, work.state.ub, work.islands
     for b in work.tables.moving:
         body, part = bodies[b], islands.part[b]
@@ -77,7 +77,7 @@ def _speeds_of_moving(work, t):
 
 @njit(cache=True, error_model="numpy", **BORROWS)
 def _join(islands, one, two):
-    """Two parts, -1 for what does not move, touch each other."""
+    """Joins the islands of two parts that touch; -1: a body that does not move."""
     if one < 0 or two < 0:
         return
     if islands.answers[one] and islands.answers[two]:
@@ -90,7 +90,7 @@ def _join(islands, one, two):
 
 @njit(cache=True, error_model="numpy", **BORROWS)
 def _join_touching(work, count):
-    """Parts of the pairs that touch, and of those with air between them; adds what contacts store."""
+    """Joins the parts of pairs that touch or have air between them; adds the stored energy of contacts."""
     tables, mid, film, islands = work.tables, work.mid, work.film, work.islands
     pairs, listed, part = tables.pairs, tables.listed, islands.part
     first = pairs.size - listed.size
@@ -108,7 +108,7 @@ def _join_touching(work, count):
             else:
                 stored = mid.faces[k, FACE_STORED]
             islands.energy[one if one >= 0 else two] += stored
-        if one == last[0] and two == last[1]:  # as of most of the many boxes of two sheets
+        if one == last[0] and two == last[1]:  # frequent: two sheets have many pairs of boxes
             continue
         last = one, two
         _join(islands, one, two)
@@ -116,8 +116,8 @@ def _join_touching(work, count):
 
 @njit(cache=True, error_model="numpy", **BORROWS)
 def measure(work, t, count):
-    """Finds the islands, speeds and energies of the step that was taken last, or of the start; t: its middle
-    [ms], `count`: how many pairs touched in it."""
+    """Updates the islands, speeds and energies for the last step, or for the start; t: its middle [ms],
+    `count`: how many pairs touched in it."""
     islands = work.islands
     top, speed, energy = islands.top, islands.speed, islands.energy
     for part in range(top.size):
@@ -148,7 +148,7 @@ def measure(work, t, count):
 
 @njit(cache=True, error_model="numpy", **BORROWS)
 def greatest_scale(islands):
-    """The greatest speed by which a part is measured [mm/ms]."""
+    """Greatest speed that scales the errors of a part [mm/ms]."""
     found = 0.0
     for part in range(islands.scale.size):
         if islands.answers[part]:
@@ -158,8 +158,8 @@ def greatest_scale(islands):
 
 @njit(cache=True, error_model="numpy", **BORROWS)
 def be_strict(islands, greatest, most):
-    """Has a step leave as much less in each part as its island is slower than the `greatest` scale, down to
-    1/`most`, which is round-off."""
+    """Sets `strict`: the limit of a step in each part is smaller in proportion to the scale of its island,
+    relative to the `greatest`; but not below 1/`most`, which is round-off."""
     for part in range(islands.scale.size):
         slower = greatest / islands.scale[part] if islands.scale[part] > 0.0 else 1.0
         islands.strict[part] = max(1.0, min(slower, most))
@@ -167,10 +167,11 @@ def be_strict(islands, greatest, most):
 
 @njit(cache=True, error_model="numpy", **BORROWS)
 def round_off(work, h):
-    """The velocity [mm/ms] below which changes are round-off of places, h [ms] being half of the step.
+    """Velocity [mm/ms] below which changes are round-off of places, where h [ms] is half of the step.
 
-    A change of the velocities moves places by h of it. What is stiff answers an error e of places by e/h,
-    what is soft by less. So changes do not fall below that in double precision, at any mass and stiffness.
+    A change of the velocities moves places by h times the change. A round-off error e of places changes the
+    velocities of stiff parts by e/h, and those of soft parts by less. So changes cannot fall below e/h in
+    double precision, at any mass and stiffness.
     """
     tables, x, u = work.tables, work.state.x, work.state.u
     far = fast = 0.0
@@ -186,8 +187,8 @@ def round_off(work, h):
 
 @njit(cache=True, error_model="numpy", **BORROWS)
 def missed_guess(work, guess, floor):
-    """By how much the velocities of a step missed their guess, relative to the scale of the sheet for which
-    that is the most: root mean squares by mass. What is below `floor` is none."""
+    """Difference between the velocities of a step and their guess: root mean square by mass, relative to the
+    scale of the sheet, of the sheet with the largest. Differences below `floor` count as zero."""
     boxes, u, label, islands = work.tables.boxes, work.state.u, work.free.label, work.islands
     sums, found = islands.sums, 0.0
     sums[:] = 0.0
@@ -202,7 +203,7 @@ def missed_guess(work, guess, floor):
 
 @njit(cache=True, error_model="numpy", **BORROWS)
 def may_make(islands, part, allowed):
-    """Sets what contacts may make or lose of energy in a step [N mm], (contacts,): that part of the energy of
+    """Sets the allowed energy error of contacts in a step [N mm], (contacts,): `part` times the energy of
     their islands. Returns the least of them."""
     least = 1e300
     for row in range(allowed.size):
@@ -214,8 +215,8 @@ def may_make(islands, part, allowed):
 
 @njit(cache=True, error_model="numpy", **BORROWS)
 def made_too_much(islands, made, allowed):
-    """How many times more energy than they may the contacts of an island `made` in a step (contacts,
-    swept.MISSES), at most."""
+    """Greatest ratio of the energy error that the contacts of an island `made` in a step (contacts,
+    swept.MISSES) to the allowed one."""
     sums, found = islands.sums, 0.0
     sums[:] = 0.0
     for row in range(made.shape[0]):

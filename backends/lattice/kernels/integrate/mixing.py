@@ -1,11 +1,10 @@
-"""Anderson's mixing of Newton's changes where contacts stand in the matrix of a step.
+"""Anderson mixing of Newton's changes where contacts are in the matrix of a step.
 
-There the tangent is not the whole derivative (see integrate.tangent): friction has the limit that its normal
-force had an iteration ago, and a factor is used again. So changes fall by some part in each iteration, and in
-a nip that friction wedges they do not fall at all: what friction does to the normal force comes back, in a
-few motions at a time. Mixing takes the sum of the last iterations that leaves the least of all their changes
-(Walker, Ni, SIAM J. Numer. Anal. 49, 1715). With the last two alone such a nip goes back and forth in
-another direction.
+There the tangent is not the whole derivative (see integrate.tangent): the limit of friction is that of the
+normal force one iteration ago, and a factor is reused. So convergence is linear. In a nip that friction
+wedges, iterations do not converge at all: the effect of friction on the normal force feeds back, in a few
+modes at a time. Mixing takes the combination of the last iterations with the least change
+(Walker, Ni, SIAM J. Numer. Anal. 49, 1715). With the last two alone, such a nip oscillates in another mode.
 """
 
 from __future__ import annotations
@@ -16,15 +15,15 @@ from mdlgen.backends.lattice.kernels.linear.dense import cholesky, cholesky_solv
 from mdlgen.backends.lattice.kernels.tuning import ALIKE, LEAST_MIXED, MIXED, MOST_MIXED, TURNING_COUNTS
 from mdlgen.program.kernel import BORROWS, njit
 
-# Rows of Matrix.mixing: the change and the velocities of the iteration before, and how changes and velocities
-# differed from one to the next.
+# Rows of Matrix.mixing: the change and the velocities of the iteration before, then the differences of
+# changes and of velocities between consecutive iterations.
 FOUND, BEFORE, DIFFERENCES = 0, 1, 2
 ROWS = DIFFERENCES + 2 * MIXED
 
 
 @njit(cache=True, error_model="numpy", fastmath={"contract", "reassoc"}, **BORROWS)
 def _dot(a, b, turning):
-    """Of changes of `turning` numbers of nodes, and of a border."""
+    """Weighted scalar product of two changes: `turning` numbers of nodes, then those of the border."""
     shifts = turns = 0.0
     for k in range(turning // 6):
         i = 6 * k
@@ -37,14 +36,14 @@ def _dot(a, b, turning):
 
 @njit(cache=True, error_model="numpy", forceinline=True)
 def _renew(kept, difference, i, now):
-    """Keeps a number as it is now, and how it differs from that before."""
+    """Stores a number, and its difference from the one before."""
     difference[i] = now - kept[i]
     kept[i] = now
 
 
 @njit(cache=True, error_model="numpy", **BORROWS)
 def _note(matrix, state, last):
-    """Keeps the change and the velocities, and how they differ from those of the iteration before."""
+    """Stores the change and the velocities, and their differences from those of the iteration before."""
     res, resb, mixing, u, ub = matrix.res, matrix.resb, matrix.mixing, state.u, state.ub
     found, before, size = mixing[FOUND], mixing[BEFORE], res.size
     less, moved = mixing[DIFFERENCES + last], mixing[DIFFERENCES + MIXED + last]
@@ -58,12 +57,12 @@ def _note(matrix, state, last):
 
 @njit(cache=True, error_model="numpy", **BORROWS)
 def mix(matrix, state, many, depth):
-    """Mixes a change, that is to be taken off the velocities, with those of the last `depth` of `many`
+    """Mixes a change, which is to be subtracted from the velocities, with those of the last `depth` of `many`
     iterations before it, whose convex problems were alike."""
     res, resb, mixing = matrix.res, matrix.resb, matrix.mixing
     gram, (parts, scales) = matrix.gram, matrix.parts
     size, kept = res.size, min(many, depth)
-    # before the first there is nothing: the row is filled again before it is used
+    # the first iteration has none before it: its row is filled again before it is used
     _note(matrix, state, (many - 1) % MIXED)
     if kept == 0:
         return

@@ -1,11 +1,11 @@
-"""Momentum of what is free, kept in each Newton iteration.
+"""Conservation of the momentum of free sheets in each Newton iteration.
 
-The forces inside a sheet have no sum and no moment, whatever its state; so the linear and the angular
-momentum of a change of velocities are those of the residual that it is to cure. A factor of an earlier state
-does not know how boxes have turned since, and misses that by as much: what it misses is taken off as a motion
-of the whole sheet. Sheets that touch each other and nothing else keep theirs together. What one half of a
-sheet does to the other, its image in a plane, has no part along the plane, and no moment about its normal:
-so that much of the momentum is kept.
+The forces inside a sheet have zero sum and zero moment in any state. So the linear and the angular momentum
+of a change of velocities must equal those of the residual. A factor of an earlier state violates that, since
+boxes have turned in the meantime. The difference is subtracted as a rigid motion of the sheet. Sheets that
+touch only each other conserve their momentum together. In a halved scene, the force between a half of a sheet
+and its mirror image has no component along the plane, and no moment about its normal. So these components
+of the momentum are conserved.
 """
 
 from __future__ import annotations
@@ -21,7 +21,7 @@ from mdlgen.program.kernel import njit
 
 
 def empty(system) -> Free:
-    """What free sheets need."""
+    """Record of the free sheets of a System."""
     bodies, joints, nodes = system.bodies, system.joints, system.nodes
     label = system.sheets
     ends = [np.where(joints[end] >= 0, bodies["node"][joints[end]], -1) for end in "ab"]
@@ -83,8 +83,8 @@ def _top(one_with, part):
 
 @njit(cache=True, error_model="numpy")
 def _tie(tables, touched, count, film, free):
-    """Makes one of the parts that touch each other, or have air between them, and marks those that are held
-    or touch something else."""
+    """Groups sheets that touch each other, or have air between them, and marks groups that are held or touch
+    another kind of body."""
     pairs, listed, sheet = tables.pairs, tables.listed, free.sheet
     loose, busy, one_with, first = free.loose, free.busy, free.one_with, pairs.size - listed.size
     last = -1, -1
@@ -97,7 +97,7 @@ def _tie(tables, touched, count, film, free):
             one, two = int(sheet[listed[p - first].a]), int(sheet[listed[p - first].b])
         else:
             one, two = int(sheet[pairs[p].a]), -1
-        if one == last[0] and two == last[1]:  # as of most of the many boxes of two sheets
+        if one == last[0] and two == last[1]:  # frequent: two sheets have many pairs of boxes
             continue
         last = one, two
         if one >= 0:
@@ -116,7 +116,7 @@ def _tie(tables, touched, count, film, free):
 
 @njit(cache=True, error_model="numpy")
 def keep(tables, touched, count, film, free, motion, change):
-    """Takes off `change` (6 nodes,), global axes, what it has of momentum beside the residual's; motion:
+    """Subtracts from `change` (6 nodes,), global axes, its excess momentum over the residual's; motion:
     places and rotations of the residual."""
     x, r = motion
     label, loose, busy, residual, one_with = free.label, free.loose, free.busy, free.residual, free.one_with
@@ -174,12 +174,12 @@ def keep(tables, touched, count, film, free, motion, change):
 
 @njit(cache=True, error_model="numpy")
 def let_go(work, push, pushb, into):
-    """How fast momentum that is left would move each sheet, and each roller, if it were free.
+    """Velocity that the residual momentum would give each sheet and each roller if nothing held it.
 
-    push (6 nodes,): momentum of the nodes, in global axes; pushb (border,): that of what slides and turns.
+    push (6 nodes,): momentum of the nodes, in global axes; pushb (border,): that of slides and spins.
     into (sheets + border,): speeds of the sheets as rigid bodies [mm/ms], of slides [mm/ms], of arms and
-    spins [rad/ms]; zero of a sheet that hangs on something; that of a sheet of which a step may leave less
-    counts that many times. Returns the greatest of them.
+    spins [rad/ms], times `strict` of their islands; zero for a sheet that a joint holds. Returns the greatest
+    of them.
     """
     boxes, nodes, free = work.tables.boxes, work.tables.nodes, work.free
     spans, own, x = work.matrix.couplings.colouring.spans, work.matrix.own, work.mid.motion.x

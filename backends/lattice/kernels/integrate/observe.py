@@ -34,9 +34,10 @@ from mdlgen.program.kernel import njit
 
 @njit(cache=True, error_model="numpy")
 def ledger(work, t, energies, rows):
-    """Velocities of all bodies at the end of a step, at time t, into those of the midpoint's motion; kinetic,
-    elastic and potential energy into energies (groups, 3); adds to each row of the contacts its normal force,
-    FORCE_NOW, and what it turns, TURNING_NOW, and has its greatest depth in DEPTH_NOW."""
+    """Evaluates the state at the end of a step, at time t. Writes the velocities of all bodies into those of
+    the midpoint's motion; kinetic, elastic and potential energy into energies (groups, 3); for each row of
+    the contacts adds its normal force, FORCE_NOW, and the values of mechanics.turning, TURNING_NOW, and sets
+    its greatest depth, DEPTH_NOW."""
     tables, state, mid, islands = work.tables, work.state, work.mid, work.islands
     bodies, gravity, nodes, label = tables.bodies, tables.gravity, tables.nodes, work.free.label
     first, groups, regions = work.search.first, islands.group_of_row, work.search.regions

@@ -1,13 +1,13 @@
-"""Patches of an iteration whose geometry is frozen: where the faces of two boxes of two sheets lie on each
+"""Patches: contacts with frozen geometry in an iteration, where faces of boxes of two sheets lie on each
 other.
 
-A patch is for all corners of an overlap what integrate.points has for one contact point. The owner of the
-contact (mechanics.overlap) moves against the other box by a rate and a spin, in its own axes, and what the
-corners do adds up to a force and a torque about its middle. So an iteration reads and writes few numbers for
-each of many thousand pairs.
+A patch combines all corners of an overlap, each of which is like a contact point of integrate.points. The
+owner of the contact (mechanics.overlap) moves against the other box by a rate and a spin, in its own axes.
+The forces of the corners add up to a force and a torque about its middle. So an iteration reads and writes
+few numbers for each of many thousand pairs.
 
-A corner keeps its place and its stiffness; its depth grows with the rate at which it closes, and its friction
-has the limit that its normal force had as the iteration began, or is a spring up to there (mechanics.stick).
+A corner keeps its place and its stiffness, and its depth grows with its closing rate. Its friction is limited
+by the normal force at the beginning of the iteration, or is a spring up to that limit (mechanics.stick).
 """
 
 from __future__ import annotations
@@ -50,8 +50,8 @@ def _pressed(corner, rate, h):
 
 @njit(cache=True, error_model="numpy", **BORROWS)
 def _evaluate(q, law, h, far, sticks):
-    """Force and torque on the owner of a patch where it has gone so far along the direction, into its `does`.
-    sticks: stretches of all pairs that are searched, where any stick."""
+    """Writes the force and torque on the owner of a patch, at the part `far` of the direction, into its
+    `does`. sticks: stretches of all pairs that are searched, where any stick."""
     rate = add(three(q.now), scale(far, three(q.along)))
     spin = add(three_from(q.now, 3), scale(far, three_from(q.along, 3)))
     force, torque = (0.0, 0.0, 0.0), (0.0, 0.0, 0.0)
@@ -80,8 +80,8 @@ def _evaluate(q, law, h, far, sticks):
 
 @njit(cache=True, error_model="numpy", **BORROWS)
 def begin_patch(work, q, k, h):
-    """Makes of a PATCH that of what is kept of the k-th pair that is searched; without corners where its
-    faces are not near enough."""
+    """Sets a PATCH from the cached overlap of the k-th searched pair; without corners where its faces are not
+    near enough."""
     motion, search, bodies = work.mid.motion, work.search, work.tables.bodies
     own, kept = search.listed[k], work.mid.overlaps[k]
     q.pair, q.count, q.coupled = k, 0, -1
@@ -122,7 +122,7 @@ def begin_patch(work, q, k, h):
 
 @njit(cache=True, error_model="numpy", **BORROWS)
 def _slope_of(work, q, h, far):
-    """Evaluates a patch; what it adds to the slope."""
+    """Evaluates a patch; returns its part of the slope."""
     _evaluate(q, law_of_boxes(work.search, q), h, far, work.mid.sticks.pairs)
     total = 0.0
     for i in range(6):
@@ -138,8 +138,8 @@ def _lying(frozen, at):
 
 @njit(cache=True, error_model="numpy", **BORROWS)
 def patches_along(work, h):
-    """Patches with corners note how they move along the direction, and are evaluated at its end; what they
-    add to the slope there, without its factor -h."""
+    """Stores the motion of patches with corners along the direction, and evaluates them at its end. Returns
+    their part of the slope there, without its factor -h."""
     frozen, r, total = work.frozen, work.mid.motion.r, 0.0
     change = frozen.vectors[OF_DIRECTION]
     for at in range(frozen.many[2]):
@@ -161,7 +161,7 @@ def patches_along(work, h):
 
 @njit(cache=True, error_model="numpy", **BORROWS)
 def patches_slope(work, h, far):
-    """What patches add to the slope at that part of the direction, without its factor -h."""
+    """Part of patches in the slope, at the part `far` of the direction, without its factor -h."""
     total = 0.0
     for at in range(work.frozen.many[2]):
         total += _slope_of(work, _lying(work.frozen, at), h, far)
@@ -170,7 +170,7 @@ def patches_slope(work, h, far):
 
 @njit(cache=True, error_model="numpy", **BORROWS)
 def pull_patches(work, h, part, g):
-    """As along.pull, with patches that were evaluated there last."""
+    """As along.pull, for patches, which were evaluated there last."""
     frozen, r = work.frozen, work.mid.motion.r
     for at in range(frozen.many[2]):
         q = _lying(frozen, at)
@@ -193,7 +193,7 @@ def pull_patches(work, h, part, g):
 
 @njit(cache=True, error_model="numpy", forceinline=True)
 def _part(block, row, column):
-    """Nine numbers of a block, row by row; it stands column by column."""
+    """Nine numbers of a block, row by row; the block is stored column by column."""
     c0, c1, c2 = block[column], block[column + 1], block[column + 2]
     return (
         *(c0[row], c1[row], c2[row]),
@@ -225,8 +225,8 @@ def _turned(t):
 
 @njit(cache=True, error_model="numpy", **BORROWS)
 def _spread(matrix, q, own, between):
-    """Adds the matrix `own` (6, 6) of what moves the owner of a patch against the other box to their blocks:
-    the other one moves it by v + w x (its middle as seen from that of the other)."""
+    """Adds the matrix `own` (6, 6), for the motion of the owner of a patch against the other box, to their
+    blocks. The other box contributes -(v + w x d), d from its middle to that of the owner."""
     first, band, couplings = q.owner == q.a, matrix.band, matrix.couplings.blocks
     a, c, d = _part(own, 0, 0), _part(own, 0, 3), _part(own, 3, 3)
     right = _sum(hat_right(a, between), c)
@@ -259,8 +259,8 @@ def _spread(matrix, q, own, between):
 
 @njit(cache=True, error_model="numpy", **BORROWS)
 def patches_into(work, h, chord):
-    """Adds what patches lose as velocities grow, times h, to the diagonal blocks of the band, and couples
-    their boxes. `chord`: see slopes.steepness."""
+    """Adds the decrease of the forces of patches per velocity, times h, to the diagonal blocks of the band
+    and to the couplings of their boxes. `chord`: see slopes.steepness."""
     frozen, matrix, motion = work.frozen, work.matrix, work.mid.motion
     couplings, sticks, own = matrix.couplings, work.mid.sticks.pairs, frozen.block
     for number in range(frozen.many[2]):

@@ -1,14 +1,13 @@
-"""Contact points of a step whose geometry is frozen: what an iteration of the step's equations may take for
-granted while it looks for the velocities.
+"""Contact points with frozen geometry, which an iteration of a step uses while it solves for the velocities.
 
 Within an iteration boxes move by little. So a point keeps its normal, its arms and its part of the stiffness;
-its depth grows with the rate at which it closes, and its friction has the limit that its normal force had as
-the iteration began. Such forces are the slope of a convex function of the velocities, which has one least
-value, and a search along any direction that leads down finds it (see integrate.convex). What boxes of two
-sheets do face on face are patches (integrate.patches).
+its depth grows with its closing rate, and its friction is limited by the normal force at the beginning of the
+iteration. Such forces are the slope of a convex function of the velocities. It has one minimum, which a line
+search along descent directions finds (see integrate.convex). Contacts of boxes of two sheets face on face are
+patches (integrate.patches).
 
-What is wrong in all this costs iterations and no accuracy: an iteration begins with the forces as the laws
-have them, and adds what the points make of the change.
+These approximations cost iterations, not accuracy: each iteration begins with the forces of the exact laws,
+and adds the response of the points to the change.
 """
 
 from __future__ import annotations
@@ -56,15 +55,15 @@ from mdlgen.mechanics.pair import on_fixed_plate
 from mdlgen.mechanics.vector import add, cross, dot, scale, sub, three, three_from
 from mdlgen.program.kernel import BORROWS, njit
 
-# In place of how many corners a patch has: its overlap is yet to be found.
+# Value of a patch's number of corners while its overlap has not been computed.
 TO_FIND_CORNERS = -1
 
 
 @njit(cache=True, error_model="numpy", **BORROWS)
 def law_at(q, v, h):
-    """Elastic force of a point and its growth with depth, its normal force, rate and slip velocity, with what
-    a bristle adds to that, or the stretch of STRETCHED friction, at the velocity v of the first body against
-    the second."""
+    """Evaluates a point at the velocity v of the first body against the second. Returns the elastic force,
+    its growth with depth, the normal force, the closing rate, and the slip velocity. The last includes the
+    part of a bristle, or the stretch of STRETCHED friction."""
     n, square = three_from(q, NORMAL), three_from(q, SQUARE)
     rate = -dot(v, n)
     spring = max(q[SPRING] + q[GROWTH] * h * (rate - q[RATE]), 0.0)
@@ -77,7 +76,7 @@ def law_at(q, v, h):
 
 @njit(cache=True, error_model="numpy", **BORROWS)
 def force_of(q, v, h):
-    """Force of a point on the first body at the velocity v; of one that A_COUPLE the couple."""
+    """Force of a point on the first body at the velocity v; for A_COUPLE, the couple."""
     n = three_from(q, NORMAL)
     if q[KIND] == A_DAMPER:
         return scale(q[SPRING] * q[BETA] * sign_step(-dot(v, n), q[OVER]), n)
@@ -101,7 +100,7 @@ def force_of(q, v, h):
 
 @njit(cache=True, error_model="numpy", **BORROWS)
 def _begin(frozen, p, where, normal, a, b):
-    """A point more of a pair, of bodies that are Frames; returns its number, -1: there is no room for it."""
+    """Adds a point of a pair, whose bodies are Frames; returns its number, -1: the array is full."""
     many = frozen.many[0]
     if many == frozen.pair.size:
         return -1
@@ -123,7 +122,7 @@ def _begin(frozen, p, where, normal, a, b):
 
 @njit(cache=True, error_model="numpy", **BORROWS)
 def _started(q, h):
-    """Notes what a point does as the iteration begins."""
+    """Stores the force of a point at the beginning of the iteration."""
     f = force_of(q, three_from(q, NOW), h)
     for i in range(3):
         q[START + i] = f[i]
@@ -131,7 +130,7 @@ def _started(q, h):
 
 @njit(cache=True, error_model="numpy", **BORROWS)
 def _of_law(frozen, p, pair, out, h, motion):
-    """Adds the points of a pair as its law has left them in `out` (see mechanics.point)."""
+    """Adds the points of a pair that its law has written into `out` (see mechanics.point)."""
     a, b = frame_of(motion, pair.a), frame_of(motion, pair.b)
     law = law_of(pair)
     for k in range(int(out[law_point.POINTS])):
@@ -157,7 +156,7 @@ def _of_law(frozen, p, pair, out, h, motion):
             return
         q = frozen.points[many]
         alone = kind == law_point.ALONE
-        # what the points of a nip are damped by stands on its contact line
+        # the damper of the points of a nip is on its contact line
         times = 1.0 if alone or spring == 0.0 else force / spring
         q[SPRING], q[GROWTH] = times * spring, times * out[at + law_point.GROWTH]
         if alone:
@@ -194,7 +193,7 @@ def _of_law(frozen, p, pair, out, h, motion):
 
 @njit(cache=True, error_model="numpy", **BORROWS)
 def _of_air(frozen, film, pair, p, motion):
-    """Adds the cells of air of a pair, where it has any that are not points yet."""
+    """Adds those cells of air of a pair that are not yet points."""
     cells, i = film.cells, film.head[p]
     if i < 0 or cells[i].point >= 0:
         return
@@ -213,7 +212,7 @@ def _of_air(frozen, film, pair, p, motion):
 
 @njit(cache=True, error_model="numpy", **BORROWS)
 def _note_ends(tables, frozen):
-    """Notes the bodies and nodes of each point."""
+    """Stores the bodies and nodes of each point."""
     bodies, pairs, listed, last = tables.bodies, tables.pairs, tables.listed, -1
     first, a, b, one, two = pairs.size - listed.size, 0, 0, -1, -1
     for k in range(frozen.many[0]):
@@ -229,7 +228,7 @@ def _note_ends(tables, frozen):
 
 @njit(cache=True, error_model="numpy", **BORROWS)
 def _patches(work, begins, close, h):
-    """Makes patches of the near pairs from `begins` on, which are searched, where overlaps are known."""
+    """Sets up patches of the near pairs from `begins` on, which are searched, where overlaps are known."""
     mid, first, frozen = work.mid, work.search.first, work.frozen
     for slot in range(close - begins):
         at = begins + slot
@@ -246,8 +245,8 @@ def _patches(work, begins, close, h):
 
 @njit(cache=True, error_model="numpy")
 def gather(work, counts, h, plates):
-    """Takes the points and the patches of the near pairs at the midpoint, and points of air; `counts`: how
-    many touch, how many are near; `plates`: of those with fixed plates alone."""
+    """Collects the points and the patches of the near pairs at the midpoint, and points of air; `counts`: how
+    many touch, how many are near; `plates`: only contacts with fixed plates."""
     tables, mid, frozen, film = work.tables, work.mid, work.frozen, work.film
     bodies, pairs, near, motion = tables.bodies, tables.pairs, mid.near, mid.motion
     count, close = counts

@@ -1,5 +1,4 @@
-"""What points and patches of an iteration with frozen contacts lose as velocities grow: their part of its
-matrix."""
+"""Part of points and patches in the matrix of an iteration: the decrease of their forces per velocity."""
 
 from __future__ import annotations
 
@@ -88,8 +87,8 @@ def _couple_into(bodies, ends, axis, growth, matrix):
 
 @njit(cache=True, error_model="numpy", **BORROWS)
 def points_into(work, h, chord):
-    """Adds what the forces of all points and patches lose as velocities grow, times h, to band, border and
-    corner; what couples boxes of two sheets goes to the couplings. `chord`: see slopes.steepness."""
+    """Adds the decrease of the forces of all points and patches per velocity, times h, to band, border and
+    corner, and to the couplings between boxes of two sheets. `chord`: see slopes.steepness."""
     tables, frozen, matrix, x = work.tables, work.frozen, work.matrix, work.mid.motion.x
     bodies, couplings, first = tables.bodies, matrix.couplings, work.search.first
     couplings.many[0] = 0
@@ -99,7 +98,7 @@ def points_into(work, h, chord):
         q, p, ends = frozen.points[k], frozen.pair[k], frozen.ends[k]
         node, other = ends.one, ends.two
         if p != last:
-            # cells of air, and no other points, may be of a pair that has a patch
+            # of all points, only cells of air may belong to a pair that has a patch
             while at < frozen.many[1] and frozen.patches[at].pair + first < p:
                 at += 1
             patch = (

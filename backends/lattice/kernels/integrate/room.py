@@ -1,4 +1,4 @@
-"""Room for what a step works on."""
+"""Allocates the arrays of a step."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ from mdlgen.mechanics.stick import STRETCH
 
 
 def empty(system, wide: int) -> tuple[State, Midpoint, Matrix]:
-    """State, midpoint and matrix of a System, all zero; `wide` numbers hold what a pair does."""
+    """State, midpoint and matrix of a System, all zero; `wide`: numbers in the result of a pair."""
     bodies, nodes, border = len(system.bodies), len(system.nodes), system.border
     sticking = bool((system.search.regions["sticking"] > 0.0).any())
     state = State(
@@ -48,7 +48,7 @@ def empty(system, wide: int) -> tuple[State, Midpoint, Matrix]:
         motion=Motion(*places, *rates),
         forces=np.zeros((bodies, 6)),
         touched=np.zeros(len(system.pairs), np.int64),
-        results=np.zeros((len(system.pairs) + 1, wide)),  # a loop takes the row behind the last one
+        results=np.zeros((len(system.pairs) + 1, wide)),  # loops write to the row behind the last one
         rows=np.arange(max(1, len(system.pairs))),
         faces=np.zeros((max(1, len(system.pairs)), FACE)),
         totals=np.zeros(2),
@@ -88,7 +88,7 @@ def empty(system, wide: int) -> tuple[State, Midpoint, Matrix]:
 
 
 def sticks(pairs: int, bodies: int) -> Sticks:
-    """Stretches of so many pairs that are searched, and of so many bodies."""
+    """Stretches of this number of searched pairs, and of bodies."""
     return Sticks(
         pairs=np.zeros(pairs, STRETCH),
         aside=np.zeros(pairs, STRETCH),
@@ -99,7 +99,7 @@ def sticks(pairs: int, bodies: int) -> Sticks:
 
 
 def drift(system) -> Drift:
-    """Sheets of which no overlaps were looked at."""
+    """Record of sheets whose overlaps were not yet checked."""
     sheets, regions = int(system.sheets.max(initial=-1)) + 1, system.search.regions
     label = np.full(len(system.bodies), -1, np.int64)
     label[system.nodes] = system.sheets
@@ -117,9 +117,9 @@ def drift(system) -> Drift:
 
 
 def frozen(system, cells: int) -> Frozen:
-    """Room for the points of an iteration with frozen contacts, for so many cells of air, and for patches of
-    all pairs that are searched. Where there is none for a point, it is left out of the iteration, and of
-    nothing else."""
+    """Arrays for the points of an iteration with frozen contacts, for this number of cells of air, and for
+    patches of all searched pairs. A point that exceeds the capacity is omitted from the iteration, not from
+    the forces."""
     nodes, border, listed = len(system.nodes), system.border, system.search.first
     searched = len(system.pairs) - listed
     room = 2 * MOST_POINTS * listed + 2 * searched + cells

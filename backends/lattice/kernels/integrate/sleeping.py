@@ -1,4 +1,4 @@
-"""How fast sheets on each other are, and what those that sleep miss (see integrate.sleep)."""
+"""Speeds of sheets on each other, and impulses that sleeping sheets miss (see integrate.sleep)."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from mdlgen.program.kernel import BORROWS, njit
 
 @njit(cache=True, error_model="numpy", **BORROWS)
 def note_speeds(boxes, label, u, asleep):
-    """Speeds of sheets are those of their fastest places at the velocities u (nodes, 6)."""
+    """Updates the speeds of sheets: those of their fastest places at the velocities u (nodes, 6)."""
     for n in range(label.size):
         rate, spin = (u[n, 0], u[n, 1], u[n, 2]), (u[n, 3], u[n, 4], u[n, 5])
         fast = fastest_place(boxes[n, OWN_REACH], rate, spin)
@@ -18,7 +18,8 @@ def note_speeds(boxes, label, u, asleep):
 
 @njit(cache=True, error_model="numpy", **BORROWS)
 def disturbed(bodies, forces, asleep, dt):
-    """A box that sleeps and would miss more than it may, with the forces (bodies, 6) for dt; -1: none."""
+    """Sleeping box whose missed impulses would exceed the limit with the forces (bodies, 6) for dt; -1:
+    none."""
     for k in range(asleep.bodies.size):
         b = asleep.bodies[k]
         inertia = min(bodies[b].inertia[0], bodies[b].inertia[1], bodies[b].inertia[2])
@@ -33,7 +34,7 @@ def disturbed(bodies, forces, asleep, dt):
 
 @njit(cache=True, error_model="numpy", **BORROWS)
 def miss(forces, asleep, dt):
-    """Adds up what boxes that sleep miss of a step of dt."""
+    """Adds the impulses on sleeping boxes in a step of dt."""
     for k in range(asleep.bodies.size):
         for i in range(6):
             asleep.missed[k, i] += dt * forces[asleep.bodies[k], i]

@@ -5,9 +5,10 @@ forces at the middle: positions x0 + h u, rotations exp(h w) R0. Then x1 = x0 + 
 and velocities and angular momenta are carried to 2 u - v0 and 2 J w - l0. So linear and angular momentum
 are conserved to the accuracy of the iteration, whatever the step.
 
-The rule itself damps nothing: what is too fast for a step rings on. So joints are damped by their stiffness
-times a part of h that goes with the step, which leaves the rule of second order. That is numerical damping,
-and what it takes is counted apart. A joint that has a damping time of its own needs that much less of it.
+The rule itself damps nothing: modes that are too fast for a step keep ringing. So joints are damped by their
+stiffness times a time that is a part of h, proportional to the step, which keeps the rule of second order.
+This is numerical damping, and its dissipation is counted separately. A damping time of the joint itself is
+subtracted from it.
 """
 
 from __future__ import annotations
@@ -137,7 +138,7 @@ def _residual(tables, t, h, state, mid, res, resb):
         if spin_at >= 0:
             axis = bodies[k].axis
             about = f[k, 3] * axis[0] + f[k, 4] * axis[1] + f[k, 5] * axis[2]
-            if bodies[k].coupled != FOLLOWER:  # the one that leads stands before those that follow
+            if bodies[k].coupled != FOLLOWER:  # a leader precedes its followers in the list
                 resb[spin_at] = p[AXIAL] * (ub[spin_at] - vb[spin_at]) - h * about
             else:
                 resb[spin_at] -= h * bodies[k].ratio * about
@@ -145,7 +146,7 @@ def _residual(tables, t, h, state, mid, res, resb):
 
 @njit(cache=True, error_model="numpy", **BORROWS)
 def _weights(tables, f):
-    """Weight of what slides, and of rollers on arms, on top of the forces on them."""
+    """Adds the weights of sliding bodies, and of rollers on arms, to the forces on them."""
     bodies, gravity = tables.bodies, tables.gravity
     for k in tables.moving:
         if bodies[k].slide >= 0:
@@ -156,8 +157,8 @@ def _weights(tables, f):
 
 @njit(cache=True, error_model="numpy", **BORROWS)
 def _contact_forces(work, close, h, known):
-    """Adds the forces of contacts and of air to those of the midpoint, h [ms] after the state, where `known`
-    from what the contact solve last evaluated. Returns (how many pairs touch, dissipated power)."""
+    """Adds the forces of contacts and of air to those of the midpoint, h [ms] after the state. Where `known`,
+    the results of the last contact solve are reused. Returns (how many pairs touch, dissipated power)."""
     mid, condensed = work.mid, work.condensed
     if known:
         again = (condensed.touched, condensed.results, condensed.looked[TOUCHED], condensed.seen)
@@ -177,7 +178,7 @@ def _contact_forces(work, close, h, known):
 
 @njit(cache=True, error_model="numpy")
 def _make_factor(work, counts, h, lag, where, chord):
-    """The tangent of a step in box axes, factored. Returns False where it is not regular."""
+    """Factors the tangent of a step in box axes. Returns False where it is singular."""
     tables, matrix, motion = work.tables, work.matrix, work.mid.motion
     a = matrix.band
     masses(tables.bodies, tables.nodes, motion.r, a)
@@ -195,8 +196,8 @@ def _make_factor(work, counts, h, lag, where, chord):
 
 @njit(cache=True, error_model="numpy")
 def _factor_for(work, counts, h, lag, where, chord, control):
-    """Sees to it that the factor is one of this step, with contacts `where` they are. Returns whether it was
-    made, -1: there is none."""
+    """Refactors the matrix unless its factor is one of this step with the same treatment of contacts,
+    `where`. Returns 1 if it was factored, 0 if the old factor serves, -1 if it is singular."""
     factored = control.factored
     if factored[MADE_FOR] == 2.0 * h and factored[STALE] == 0.0 and factored[WHERE] == where:
         return 0
@@ -209,10 +210,10 @@ def _factor_for(work, counts, h, lag, where, chord, control):
 
 @njit(cache=True, error_model="numpy", **BORROWS)
 def _treatment(work, count, where, m, air, begins, late, tough):
-    """Where the contacts of an iteration stand, and how many boxes are chosen for those apart from the
-    matrix: as in the iteration before, `where` with m boxes, or where a step `begins` as few in the matrix as
-    can be. All are in it with air, where iterations get `late`, or lately did (`tough`), and where boxes of
-    two sheets touch."""
+    """Chooses the treatment of contacts in an iteration. Returns it, and the number of boxes whose contacts
+    are condensed. It is that of the iteration before, `where` with m boxes; where a step `begins`, as few
+    contacts as possible are in the matrix. All are in it with air, where iterations get `late` or recently
+    did (`tough`), and where boxes of two sheets touch."""
     tables, condensed, touched = work.tables, work.condensed, work.mid.touched
     bodies, pairs, most = tables.bodies, tables.pairs, condensed.chosen.size
     if air:
@@ -237,7 +238,7 @@ def _treatment(work, count, where, m, air, begins, late, tough):
 @njit(cache=True, error_model="numpy", **BORROWS)
 def _done(work, h, counts, totals, counters):
     """Ends a step whose velocities are found; `counts`: how many pairs touch, how many are near. Returns
-    whether no sheet went through another."""
+    False if a sheet went through another."""
     mid, search = work.mid, work.search
     mid.totals[LOST], mid.totals[POWER] = totals
     counters[TOUCHING], counters[CLOSE] = counts
@@ -249,7 +250,7 @@ def _done(work, h, counts, totals, counters):
 
 @njit(cache=True, error_model="numpy")
 def midpoint(work, t, dt, tolerance, control):
-    """Solves for the velocities at the middle of a step. Returns whether it converged."""
+    """Solves for the velocities at the middle of a step. Returns True if it converged."""
     tables, state, mid, matrix, condensed = work.tables, work.state, work.mid, work.matrix, work.condensed
     nodes = tables.nodes
     factored, counters = control.factored, control.counters
@@ -261,7 +262,8 @@ def midpoint(work, t, dt, tolerance, control):
     counters[THROUGH] = -1.0
     close, where, m = 0, int(factored[WHERE]), 0
     margin, moved, sheets = FAR, 0.0, work.search.regions.size > 0
-    # loads add to the forces, by which the drives' power is counted; what sticks is where the step ends
+    # `lasting`: the last contact forces may serve for the end of the step. Not with loads, which would be in
+    # the power of drives; not with friction that sticks, whose stretch is that of the last velocities
     sticks = tables.held.size > 0
     lasting = sheets and tables.loads.size == 0 and mid.sticks.pairs.size == 0 and not sticks
     mid.sticks.half[0] = h
@@ -272,7 +274,7 @@ def midpoint(work, t, dt, tolerance, control):
     for iteration in range(NEWTON_MOST):
         place(tables, h, t + h, state, mid.motion)
         if iteration == 0 or margin < dt * moved:
-            # what the guess did not know of may move further than it said
+            # bodies may move further than the guess predicted
             margin = FAR + 2.0 * dt * moved
             close = list_near(work, margin, h, mid.near)
             unsee(condensed)
@@ -293,12 +295,12 @@ def midpoint(work, t, dt, tolerance, control):
         _weights(tables, mid.forces)
         clutch_torques(tables, t + h, h, state, mid.forces)
         _residual(tables, t + h, h, state, mid, res, resb)
-        # what is free converges fast, and keeps its angular momentum as well as the iterations end
+        # free sheets converge fast, and the error of their angular momentum is that of the last iteration
         limit = tolerance if count > 0 or air else FREE * tolerance
         where, m = _treatment(work, count, where, m, air, iteration == 0, iteration == last, factored[TOUGH])
         counters[ITERATIONS] += 1
         copy(work.free.residual, res)
-        # the axes of the boxes as they stand now: half a step before, what is stiff in a box points elsewhere
+        # present axes of the boxes: those of half a step before have other stiff directions
         copy(condensed.axes, mid.motion.r)
         if where == INSIDE:
             turn_nodes(nodes, condensed.axes, res, True)
@@ -336,12 +338,12 @@ def midpoint(work, t, dt, tolerance, control):
         turn_nodes(nodes, condensed.axes, res, False)
         found = 0.0
         if where == INSIDE:
-            # what is mixed may be small while what is left is not
+            # the change before mixing counts, too: the mixed one may be small while the residual is not
             found = greatest(work, res, resb, control)
             if inner < 0:
                 found = max(found, 2.0 * limit)
-            # without air, steps that do not resolve contacts would end where they are halved otherwise: more
-            # are mixed where a step goes back and forth between states that friction wedges
+            # without air one is mixed: with more, steps that do not resolve contacts would converge instead
+            # of being halved. More are mixed late, where a step oscillates between states wedged by friction
             mix(matrix, state, alike, MIXED if air or alike > CONVEX_AFTER else 1 if alike > 1 else 0)
             alike += 1
         keep(tables, mid.touched, count, work.film, work.free, (mid.motion.x, mid.motion.r), res)
@@ -355,15 +357,15 @@ def midpoint(work, t, dt, tolerance, control):
             break
         moved += change
         if count > 0:
-            # what is free beside what touches converges as far as it would alone
+            # free sheets in a scene with contacts converge as far as without them
             change = max(change, greatest_of_free(work, res, control.pace[FLOOR]) / FREE)
         rate = change / before
         falls = before < 1e299 and rate < 0.5
         if dt * moved <= margin and (change <= limit or (falls and change * rate / (1.0 - rate) <= limit)):
-            # forces change much with what the last iteration changed: friction, over its smoothing speed
+            # forces are evaluated again: friction changes fully within its smoothing speed
             place(tables, h, t + h, state, mid.motion)
             if not lasting or change > SAME_FORCES * control.pace[LOOSE]:
-                # bristles hold as in the equations that were solved: what is laid stays
+                # the input of bristles is not set again, so that they act as in the solved equations
                 mid.forces[:] = 0.0
                 count, rubbed = _contact_forces(work, close, h, False)
             release(condensed, m)

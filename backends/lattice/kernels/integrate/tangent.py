@@ -1,8 +1,8 @@
-"""The matrix of a step: mass, damping and stiffness in one, symmetric, in band and border.
+"""The matrix of a step: the sum of mass, damping and stiffness, symmetric, in band and border.
 
-It is the derivative of the step's equations but for small parts: the turning of forces (geometric stiffness)
-and the growth of friction with the normal force, which is not symmetric. Newton's method takes a few more
-iterations for them, and the matrix stays positive.
+It is the derivative of the step's equations without two small parts: the rotation of forces (geometric
+stiffness), and the growth of friction with the normal force, which is not symmetric. Newton's method takes a
+few more iterations without them, and the matrix stays positive.
 """
 
 from __future__ import annotations
@@ -48,7 +48,7 @@ def _conjugate(m, d):
 
 @njit(cache=True, error_model="numpy")
 def _along(t, n, times):
-    """What a symmetric matrix that has n as an axis does along it."""
+    """Part of a symmetric matrix t along its principal axis n, times a factor: times (n t n) n n^T."""
     v = times * dot(n, rotate(t, n))
     x, y, z = n
     return (v * x * x, v * x * y, v * x * z, v * y * x, v * y * y, v * y * z, v * z * x, v * z * y, v * z * z)
@@ -138,7 +138,7 @@ def joints_into(tables, joints, h, lag, x, r, a, slots):
         full = (ee[0], ee[1], ee[2], ee[1], ee[3], ee[4], ee[2], ee[4], ee[5])
         g = matmul(matmul(m, full), (m[0], m[3], m[6], m[1], m[4], m[7], m[2], m[5], m[8]))
         if joint.mirrored != 0:
-            # the far end moves as this one does, seen in the mirror: P_b [S, -S] = S P_a with S = 1 - 2 n n^T
+            # the far end moves as the mirror image of this one: P_b [S, -S] = S P_a with S = 1 - 2 n n^T
             n = three(images[0].normal)
             t = _along(t, n, 2.0)
             g = _less(2.0, g, _along(g, n, 2.0))
@@ -155,8 +155,8 @@ def joints_into(tables, joints, h, lag, x, r, a, slots):
 
 @njit(cache=True, error_model="numpy")
 def rollers_into(tables, h, t, state, d):
-    """Sets the corner to the rollers' own: masses, springs, dampers and stops of slides, clutches and motors
-    at t, which is h after the state."""
+    """Sets the corner to the terms of rollers alone: masses, springs, dampers and stops of slides, clutches
+    and motors at t, which is h after the state."""
     bodies, axles, ub, s = tables.bodies, tables.shapes.axles, state.ub, state.s
     d[:] = 0.0
     for k in tables.moving:

@@ -1,4 +1,4 @@
-"""Which unknowns of rollers and pressed plates move a contact point, and how."""
+"""Unknowns of rollers and pressed plates that move a contact point, and the directions of that motion."""
 
 from __future__ import annotations
 
@@ -28,8 +28,8 @@ def moving(body, arm, x, sign, direction, index, count):
 
 @njit(cache=True, error_model="numpy", **BORROWS)
 def turning_of(bodies, pair, which, axis):
-    """The unknown of a pair's rollers with a number from 0 to 3, -1: none, and how fast it turns the first
-    body against the second about an axis."""
+    """Unknown number `which`, from 0 to 3, of a pair's rollers, -1: none; and the angular velocity about an
+    axis that it gives the first body against the second."""
     body, sign = bodies[pair.a if which < 2 else pair.b], 1.0 if which < 2 else -1.0
     if which % 2 == 0:
         return body.spin, sign * body.ratio * dot(three(body.axis), axis)

@@ -1,1 +1,1 @@
-"""Systems of linear equations: dense matrices, bands of blocks, what borders and couples them."""
+"""Systems of linear equations: dense matrices, bands of blocks, their borders and couplings."""

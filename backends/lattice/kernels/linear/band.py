@@ -1,11 +1,11 @@
 """A symmetric band of 6 x 6 blocks: Cholesky factors and solves, on one thread and without allocation.
 
-Block column j holds rows j ... j + reach as an array (6 columns, 6 (reach + 1) + PAD rows); rows stand
-together in memory, so that the inner loops run over them, eight at a time in a factor. PAD rows of zeros let
-these loops run in whole vectors: what is left over at the end of a short loop costs as much as its middle.
-Only the lower half of the diagonal blocks counts. A factor has the inverses of its diagonal blocks in their
-place: a solve waits for less then, since six numbers of a block follow from six at once, and not one from
-another.
+Block column j holds rows j ... j + reach as an array (6 columns, 6 (reach + 1) + PAD rows). Rows are
+contiguous in memory, so that the inner loops run over them, eight at a time in a factor. PAD rows of zeros
+let these loops run in whole vectors: the scalar remainder of a short loop costs as much as its vector part.
+Only the lower half of the diagonal blocks counts. A factor stores the inverses of its diagonal blocks in
+their place. That makes a solve faster: its six numbers of a block are independent products, and not a chain
+of substitutions.
 """
 
 from __future__ import annotations
@@ -62,7 +62,7 @@ def factor(a):
             return False
         for at in range(6, 6 * blocks, EIGHT):
             times_triangle(col, at)
-        # what they take off the columns behind
+        # subtract their products from the columns behind
         for block in range(1, min(blocks, nodes - j)):
             target = a[j + block]
             for to in range(0, 6 * (blocks - block), EIGHT):
@@ -72,7 +72,7 @@ def factor(a):
 
 @njit(cache=True, error_model="numpy", boundscheck=False, forceinline=True)
 def _forward(col, x, base):
-    """The inverse of a diagonal block times six numbers of x, which become that."""
+    """Multiplies six numbers of x, in place, by the inverse of a diagonal block."""
     x0, x1, x2, x3, x4, x5 = x[base], x[base + 1], x[base + 2], x[base + 3], x[base + 4], x[base + 5]
     c0, c1, c2, c3, c4, c5 = col[0], col[1], col[2], col[3], col[4], col[5]
     y5 = (c0[5] * x0 + c1[5] * x1) + (c2[5] * x2 + c3[5] * x3) + (c4[5] * x4 + c5[5] * x5)
@@ -139,7 +139,7 @@ def _up(col, x, base, length):
     c0, c1, c2 = col[0, 6:end], col[1, 6:end], col[2, 6:end]
     c3, c4, c5 = col[3, 6:end], col[4, 6:end], col[5, 6:end]
     behind = x[base + 6 : base + end]
-    # zeros of the precision of x: with others, sums of single precision would be made in double
+    # zeros of the precision of x: otherwise sums of single precision would be computed in double
     s0 = s1 = s2 = s3 = s4 = s5 = x[base] - x[base]
     for r in range(length):
         v = behind[r]
@@ -151,7 +151,7 @@ def _up(col, x, base, length):
         s5 += c5[r] * v
     x0, x1, x2 = x[base] - s0, x[base + 1] - s1, x[base + 2] - s2
     x3, x4, x5 = x[base + 3] - s3, x[base + 4] - s4, x[base + 5] - s5
-    # times the inverse of the diagonal block, the other way
+    # times the transposed inverse of the diagonal block
     d0, d1, d2, d3, d4, d5 = col[0], col[1], col[2], col[3], col[4], col[5]
     x[base] = (d0[0] * x0 + d0[1] * x1) + (d0[2] * x2 + d0[3] * x3) + (d0[4] * x4 + d0[5] * x5)
     x[base + 1] = (d1[1] * x1 + d1[2] * x2) + (d1[3] * x3 + d1[4] * x4) + d1[5] * x5
@@ -182,8 +182,8 @@ def solve(a, x, first=0):
 
 @njit(cache=True, error_model="numpy", boundscheck=False, **BORROWS)
 def solve_single(a, x, short):
-    """As solve, with a factor in single precision and in that precision: to turn what is read into double
-    would take longer than to work with it. `short`: scratch, as long as x."""
+    """As solve, with a factor in single precision, computed in that precision: a conversion to double would
+    take longer than the solve. `short`: scratch, as long as x."""
     for i in range(x.size):
         short[i] = x[i]
     solve(a, short)
@@ -193,8 +193,8 @@ def solve_single(a, x, short):
 
 @njit(cache=True, error_model="numpy", boundscheck=False, **BORROWS)
 def solve_six(a, x, first=0):
-    """Solves for six right-hand sides at once, x (6, 6 nodes): a column is read from memory once for all, and
-    on the way down into registers once for two."""
+    """Solves for six right-hand sides at once, x (6, 6 nodes). A column is read from memory once for all, and
+    in the forward step into registers once for two."""
     nodes = a.shape[0]
     length, short = _lengths(a)
     for j in range(first, nodes):

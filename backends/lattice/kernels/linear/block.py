@@ -1,4 +1,4 @@
-"""Products with a block of 6 x 6 that couples two nodes; it stands column by column."""
+"""Products with a block of 6 x 6 that couples two nodes; the block is stored column by column."""
 
 from __future__ import annotations
 

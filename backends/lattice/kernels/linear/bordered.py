@@ -1,4 +1,5 @@
-"""The unknowns of rollers beside the band: the matrix with its border, where contacts stand inside it."""
+"""Bordered systems: the band of the nodes, bordered by the unknowns of rollers, with contacts in the
+matrix."""
 
 from __future__ import annotations
 
@@ -9,7 +10,7 @@ from mdlgen.program.kernel import njit
 
 @njit(cache=True, error_model="numpy")
 def eliminate(a, b, d, y, corner):
-    """Y = A^-1 B (rows of y) and the factored corner D - B Y. Returns False where that is not regular."""
+    """Y = A^-1 B (rows of y) and the factored corner D - B Y. Returns False where that is singular."""
     many = d.shape[0]
     copy(corner, d)
     for j in range(many):

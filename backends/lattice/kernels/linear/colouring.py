@@ -14,18 +14,18 @@ ONE, TWO = 0, 1
 
 
 class Colouring(NamedTuple):
-    """Which sheet has which colour, and the rollers' corner beside the first."""
+    """Colours of the sheets, and the corner of the rollers after elimination of the first colour."""
 
-    spans: np.ndarray  # first node of a sheet and the first behind it, (sheets, 2)
-    label: np.ndarray  # the sheet of each node, by its row in spans
-    of: np.ndarray  # the colour of each sheet, 0 or 1; -1: not known yet
-    found: np.ndarray  # (1,) whether two colours are enough
-    series: np.ndarray  # (1,) whether contacts stand in series (see in_series)
-    corner: np.ndarray  # Cholesky factor, (border, border)
-    begins: np.ndarray  # where the couplings of a sheet begin in `own`, (sheets + 1,)
-    own: np.ndarray  # couplings of each sheet, in their order, (2 pairs,)
-    enough: np.ndarray  # square of the residual that may be left of a sheet, (sheets,)
-    reached: np.ndarray  # first number of a sheet that each roller reaches, and the first behind them
+    spans: np.ndarray  # first node of a sheet and the first behind it, (sheets, 2).
+    label: np.ndarray  # sheet of each node, by its row in spans.
+    of: np.ndarray  # colour of each sheet, 0 or 1; -1: not known yet.
+    found: np.ndarray  # (1,) 1 if two colours are enough.
+    series: np.ndarray  # (1,) 1 if contacts act as springs in series (see in_series).
+    corner: np.ndarray  # Cholesky factor, (border, border).
+    begins: np.ndarray  # first coupling of a sheet in `own`, (sheets + 1,).
+    own: np.ndarray  # couplings of each sheet, in their order, (2 pairs,).
+    enough: np.ndarray  # squared residual at which the solve of a sheet ends, (sheets,).
+    reached: np.ndarray  # first number of a sheet that each roller reaches, and the first behind them.
 
 
 def colouring(label: np.ndarray, border: int, pairs: int) -> Colouring:
@@ -48,7 +48,7 @@ def colouring(label: np.ndarray, border: int, pairs: int) -> Colouring:
 
 @njit(cache=True, error_model="numpy")
 def _colour(couplings):
-    """Gives the sheets colours. Returns False where two are too few: three that all touch each other."""
+    """Assigns colours to the sheets. Returns False where two are too few: three sheets touch each other."""
     label, of, ends = couplings.colouring.label, couplings.colouring.of, couplings.ends
     for sheet in range(of.size):
         of[sheet] = -1
@@ -95,7 +95,7 @@ def _list(couplings):
 
 @njit(cache=True, error_model="numpy", **BORROWS)
 def colour(couplings):
-    """Colours the sheets for the couplings that there are. Returns whether two are enough."""
+    """Colours the sheets for the present couplings. Returns True if two colours are enough."""
     colours = couplings.colouring
     colours.found[0] = colours.series[0] = 0
     if couplings.many[0] == 0 or not _colour(couplings):

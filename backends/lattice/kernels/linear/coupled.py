@@ -1,10 +1,10 @@
 """Contacts between boxes of two sheets in the matrix of a step.
 
-Such boxes stand far apart in the band, wherever the sheets slide. So the band holds what a contact does to
-each of its boxes alone, and the blocks that couple the two are a list. Both together are positive, and the
-band with its border is most of it: the method of conjugate gradients with that as preconditioner solves the
-whole in a few iterations, each of which costs a solve with the band. Mostly it can do with half as many (see
-two_colour).
+Such boxes are far apart in the band, at places that change as the sheets slide. So the band holds the part of
+a contact on each of its boxes alone, and the blocks that couple the two form a list. Their sum is positive
+definite, and the band with its border dominates it. With these as preconditioner the method of conjugate
+gradients needs a few iterations, each of which costs a solve with the band. In most scenes half of these are
+enough (see two_colour).
 """
 
 from __future__ import annotations
@@ -24,19 +24,19 @@ from mdlgen.program.kernel import BORROWS, njit
 
 
 class Couplings(NamedTuple):
-    """Pairs of nodes that a contact couples, and room for the method."""
+    """Pairs of nodes that a contact couples, and work arrays of the solver."""
 
-    many: np.ndarray  # (1,)
-    ends: np.ndarray  # nodes, (pairs, 2)
-    blocks: np.ndarray  # rows of the first, columns of the second, column by column, (pairs, 6, 6)
-    # the same in single precision, which is read in half the time, for what the second does to the first and,
-    # with rows for columns, for what the first does to the second, (pairs, 2, 6, 6)
+    many: np.ndarray  # (1,) number of pairs.
+    ends: np.ndarray  # nodes, (pairs, 2).
+    blocks: np.ndarray  # rows of the first, columns of the second, column by column, (pairs, 6, 6).
+    # Blocks in single precision, which is read in half the time: action of the second on the first, and its
+    # transpose, the action of the first on the second, (pairs, 2, 6, 6).
     single: np.ndarray
-    beside: np.ndarray  # of each node, what stands beside the band, (nodes, 6, 6); see in_series
-    through: np.ndarray  # (nodes, 2) scratch: stiffness of the contacts at each face
-    room: np.ndarray  # vectors of all unknowns, (5, 6 nodes + border)
-    short: np.ndarray  # scratch of single precision, (6 nodes,)
-    colouring: Colouring  # of the sheets
+    beside: np.ndarray  # part of each diagonal block that is not in the band, (nodes, 6, 6); see in_series.
+    through: np.ndarray  # (nodes, 2) scratch: stiffness of the contacts at each face.
+    room: np.ndarray  # vectors of all unknowns, (5, 6 nodes + border).
+    short: np.ndarray  # scratch of single precision, (6 nodes,).
+    colouring: Colouring  # colours of the sheets.
 
 
 def couplings(pairs: int, label: np.ndarray, border: int) -> Couplings:
@@ -84,7 +84,7 @@ def _dot(a, b):
 
 @njit(cache=True, error_model="numpy")
 def _couple(couplings, p, q):
-    """Adds what the blocks make of p to q."""
+    """Adds the product of the blocks and p to q."""
     for k in range(couplings.many[0]):
         a, b = 6 * couplings.ends[k, ONE], 6 * couplings.ends[k, TWO]
         block = couplings.blocks[k]
@@ -114,7 +114,7 @@ def solve_coupled(matrix, least):
     copy(z, r)
     solve_sheets(matrix)
     copy(p, z)
-    copy(own, r)  # what band and border make of p
+    copy(own, r)  # product of band and border with p
     res[:] = 0.0
     resb[:] = 0.0
     left = _dot(r, z)

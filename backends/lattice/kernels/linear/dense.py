@@ -9,8 +9,8 @@ from mdlgen.program.kernel import BORROWS, njit
 
 @njit(cache=True, error_model="numpy", **BORROWS)
 def copy(into, of):
-    """Copies a whole array of up to three dimensions; loops, since an assignment of slices brings the texts
-    of its errors along, which no shipped program may hold."""
+    """Copies a whole array of up to three dimensions. It uses loops: slice assignment would compile an error
+    path that formats strings, which a shipped program may not contain."""
     if into.ndim == 1:
         for i in range(into.shape[0]):
             into[i] = of[i]
@@ -49,7 +49,7 @@ def lu(jac, swaps, many):
                     jac[i, c] -= f * jac[k, c]
         if end == many:
             break
-        # the rows of these four, then all below them, two at a time: what is read serves both
+        # the rows of these four, then all below them, two at a time: both use each number that is read
         r0, r1, r2, r3 = jac[j, end:many], jac[j + 1, end:many], jac[j + 2, end:many], jac[j + 3, end:many]
         l10, l20, l21 = jac[j + 1, j], jac[j + 2, j], jac[j + 2, j + 1]
         l30, l31, l32 = jac[j + 3, j], jac[j + 3, j + 1], jac[j + 3, j + 2]

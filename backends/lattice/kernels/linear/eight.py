@@ -1,10 +1,10 @@
 """Eight rows of six columns at once, in the vectors of the processor.
 
-What a factor does most are sums over the columns of a block, in loops of a few dozen rows. A compiler that
-does not know that columns do not overlap looks at that before each such loop, which takes as long as the
-loop. So these sums are written in LLVM's vectors: all is loaded before anything is stored.
+A factor consists mostly of sums over the columns of a block, in loops of a few dozen rows. The compiler
+cannot exclude that columns overlap in memory, so its code checks that before each loop, which takes as long
+as the loop. So these sums are written in LLVM's vectors, which load all numbers before they store any.
 
-Arrays are (6 columns, rows), rows together in memory, with room behind the last row that counts.
+Arrays are (6 columns, rows), contiguous along rows, with unused rows behind the last one that counts.
 """
 
 from __future__ import annotations
@@ -17,7 +17,7 @@ EIGHT = 8
 
 
 class _Columns:
-    """The columns of an array, as LLVM has them."""
+    """The columns of an array as LLVM values."""
 
     def __init__(self, context: Any, builder: Any, kind: Any, value: Any):
         from llvmlite import ir
@@ -108,9 +108,10 @@ def _times_triangle_in_vectors(_typing: Any, columns: Any, at: Any) -> Any:
     return types.none(columns, at), make
 
 
-# Takes off the six columns of `target`, in the rows from `to` on, the columns of `source` in the rows from
-# `at` on, each times what it has in the row `head`, `head` + 1, ... for the first, the second, ... of them.
+# Subtracts from the six columns of `target`, in the rows from `to` on, products of the columns of `source`,
+# in the rows from `at` on. The factors for the first, second, ... column of `target` are the numbers of the
+# column of `source` in the rows `head`, `head` + 1, ...
 take_off = intrinsic(_take_off_in_vectors, _take_off)
-# The rows from `at` on become those times the triangle that stands in the first six rows, turned over: the
-# column c is the sum of the columns l up to it, each times what it has in the row c.
+# Multiplies the rows from `at` on by the transpose of the triangle in the first six rows: column c becomes
+# the sum of the columns l up to c, each times its number in the row c.
 times_triangle = intrinsic(_times_triangle_in_vectors, _times_triangle)

@@ -1,17 +1,17 @@
 """The preconditioner of the second colour where contacts are stiff: springs in series.
 
 The method of two_colour takes the band of each sheet of the second colour as its preconditioner. In that
-band a contact holds a box as if the other box stood still. But the other box gives way: where all else
-holds it with R, a contact of stiffness K is felt as K R/(K + R). Air and stiff contacts hold a box a
-hundred times as strongly as its inertia. Two sheets that move as one, which takes no more than their
-masses, were then 30 to 40 slow motions of the method: 81 iterations for two notes with air, where 11 are
-enough now.
+band a contact holds a box as if the other box were fixed. But the other box yields: where everything else
+holds it with stiffness R, a contact of stiffness K acts as K R/(K + R). Air and stiff contacts hold a box a
+hundred times as strongly as its inertia. Two sheets that move together are held by their masses alone. In the
+band they would cause 30 to 40 slowly converging modes: 81 iterations for two notes with air, where 11 are
+enough with springs in series.
 
-So the part K/(K + R) of what a contact does to a box of the second colour stands beside the band, and the
-method adds it where it multiplies. R is the inertia of the other box and all its contacts but those at the
-same face, since what is there moves with the first box as a rule. Bushings are left out: a motion that they
-resist in one sheet they mostly resist in the other as well. K and R are sums over three axes. Whatever the
-part below one, the matrix stays positive; the solution is that of the whole in any case.
+So the part K/(K + R) of a contact's stiffness at a box of the second colour is not in the band, and the
+method adds it in its products. R is the inertia of the other box plus all its contacts except those at the
+same face, since bodies there usually move with the first box. Bushings are neglected: a motion that they
+resist in one sheet they mostly resist in the other as well. K and R are sums over three axes. For any part
+below one the matrix stays positive definite; the solution does not depend on the part.
 """
 
 from __future__ import annotations
@@ -23,17 +23,17 @@ from mdlgen.program.kernel import BORROWS, njit
 
 @njit(cache=True, error_model="numpy", **BORROWS)
 def _face(motion, one, other):
-    """The face of a body that another one is at."""
+    """Face of a body at which another one is."""
     r, way = mat(motion.r, one), sub(vec(motion.x, other), vec(motion.x, one))
     return 1 if dot(way, (r[2], r[5], r[8])) > 0.0 else 0
 
 
 @njit(cache=True, error_model="numpy", **BORROWS)
 def _take(into, block, first, way, part):
-    """Adds a part of what a contact does to one of its boxes. block: what couples the two; first: whether its
-    rows are of that box; way: from there to the other box [mm]."""
+    """Adds a part of a contact's stiffness at one of its boxes. block: its coupling of the two; first: true
+    if the rows are of that box; way: vector from there to the other box [mm]."""
     for i in range(6):
-        # a row of what the motion of the other box does; both moving as one do nothing
+        # row of the coupling to the motion of the other box; a common rigid motion yields no force
         if first:
             x, y, z = block[0, i], block[1, i], block[2, i]
             a, b, c = block[3, i], block[4, i], block[5, i]
@@ -50,8 +50,8 @@ def _take(into, block, first, way, part):
 
 @njit(cache=True, error_model="numpy", **BORROWS)
 def in_series(bodies, nodes, motion, matrix):
-    """Takes off the band what stands beside it, Couplings.beside; in global axes, before masses and bushings
-    are added."""
+    """Moves the part K/(K + R) of contacts from the band to an array of the couplings; in global axes, before
+    masses and bushings are added."""
     couplings, band = matrix.couplings, matrix.band
     ends, blocks, beside, through = couplings.ends, couplings.blocks, couplings.beside, couplings.through
     colours, many = couplings.colouring, couplings.many[0]

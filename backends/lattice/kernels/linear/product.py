@@ -8,8 +8,8 @@ from mdlgen.program.kernel import BORROWS, njit
 @njit(cache=True, error_model="numpy", fastmath={"contract", "reassoc"}, boundscheck=False, **BORROWS)
 def times(a, offsets, x, y):
     """y = A x, of a symmetric matrix by the block columns of its lower half, with whole diagonal blocks.
-    `offsets`: how many nodes apart two may be whose block is not zero, from 0 on; of each column `a` has the
-    blocks of these alone, (nodes, 6 columns, 6 offsets rows)."""
+    `offsets`: distances in nodes at which blocks are not zero, from 0 on; each column of `a` has these blocks
+    alone, (nodes, 6 columns, 6 offsets rows)."""
     nodes = a.shape[0]
     y[:] = 0.0
     for j in range(nodes):

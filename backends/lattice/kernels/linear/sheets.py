@@ -10,7 +10,7 @@ from mdlgen.program.kernel import BORROWS, njit
 
 @njit(cache=True, error_model="numpy", **BORROWS)
 def _add_inner(a, inner, offsets):
-    """Adds masses and bushings (state.Matrix) to a band of which the diagonal blocks alone are known."""
+    """Adds masses and bushings (state.Matrix) to a band in which only the diagonal blocks are set."""
     for n in range(a.shape[0]):
         for c in range(6):
             col, own = a[n, c], inner[n, c]
@@ -40,8 +40,8 @@ def factor_sheets(matrix, inner):
 
 @njit(cache=True, error_model="numpy", **BORROWS)
 def _eliminate(matrix, sheet):
-    """Rows of Y = A^-1 B in the columns of a sheet; adds to the lower half of `schur` what they take off the
-    corner; which numbers of it the rollers reach; its factor in single precision."""
+    """Computes the rows of Y = A^-1 B in the columns of a sheet, and adds B Y to the lower half of `schur`.
+    Also sets the numbers of the sheet that the rollers reach, and its factor in single precision."""
     span, taken = matrix.couplings.colouring.spans[sheet], matrix.schur
     reached = matrix.couplings.colouring.reached
     b, y = matrix.border, matrix.eliminated

@@ -1,11 +1,13 @@
-"""Sheets in two colours, so that those which touch each other differ: every other one of a stack.
+"""Solves a system of sheets in two colours: those that touch have different ones, as alternate sheets of a
+stack.
 
-Then no two boxes of one colour are coupled but through their own sheet. What the first colour and the rollers
-do is eliminated exactly, a solve with their bands each time, and the method of conjugate gradients looks for
-the second colour alone. It needs half the iterations that it needs for both at once, which are no dearer.
+Then two boxes of one colour are coupled only within their sheet. The first colour and the rollers are
+eliminated exactly, by a solve with their bands each time, and conjugate gradients solve for the second colour
+alone. That needs half the iterations of a solve for both, at the same cost each.
 
-All of it is done sheet by sheet: `_first` solves for what the first colour does where the second moves by p,
-and has what that does to the second, `_step` goes that way, `_turn` finds the next.
+All loops run sheet by sheet. `_first` solves for the response of the first colour and the rollers to a motion
+p of the second, and multiplies it by the couplings; `_step` moves along p; `_turn` computes the next
+direction.
 """
 
 from __future__ import annotations
@@ -19,8 +21,9 @@ from mdlgen.program.kernel import BORROWS, njit
 
 @njit(cache=True, error_model="numpy", **BORROWS)
 def corner_of_first(matrix):
-    """Factors the corner of the first colour, where the band of all is factored and the border eliminated.
-    Where it is not positive all sheets are solved at once; returns False where contacts stand in series."""
+    """Factors the corner of the first colour, after the band of all is factored and the border eliminated.
+    Where it is not positive all sheets are solved at once; returns False where they have contacts in
+    series."""
     b, d, y, colours = matrix.border, matrix.corner, matrix.eliminated, matrix.couplings.colouring
     corner = colours.corner
     if colours.found[0] == 0:
@@ -41,7 +44,7 @@ def corner_of_first(matrix):
 
 @njit(cache=True, error_model="numpy", **BORROWS)
 def _dot(p, q):
-    """Four sums at a time, since each addition waits for the one before."""
+    """Scalar product; four sums at a time, since each addition waits for the one before."""
     one = two = three = four = 0.0
     whole = p.size - p.size % 4
     for l in range(0, whole, 4):
@@ -56,7 +59,7 @@ def _dot(p, q):
 
 @njit(cache=True, error_model="numpy", **BORROWS)
 def _across(couplings, sheet, p, q):
-    """Adds to q of a sheet what the other colour does to it where that moves by p."""
+    """Adds to q of a sheet the forces of the other colour where that moves by p."""
     colours, ends, blocks = couplings.colouring, couplings.ends, couplings.single
     label = colours.label
     for at in range(colours.begins[sheet], colours.begins[sheet + 1]):
@@ -70,7 +73,7 @@ def _across(couplings, sheet, p, q):
 
 @njit(cache=True, error_model="numpy", **BORROWS)
 def _beside(couplings, span, p, q):
-    """Adds to q of a sheet what stands beside its band."""
+    """Adds to q of a sheet the part of contacts that is not in its band (see in_series) times p."""
     for n in range(span[BEGIN], span[END]):
         block, i = couplings.beside[n], 6 * n
         x = six(p, i)
@@ -84,15 +87,15 @@ def _beside(couplings, span, p, q):
 
 @njit(cache=True, error_model="numpy", **BORROWS)
 def _rows(couplings, size):
-    """Vectors of the nodes: what is left of the second colour, what is solved for, the direction, what the
-    second colour makes of it, what the first does where the second moves."""
+    """Vectors of the nodes: residual of the second colour; preconditioned residual and product of the matrix;
+    direction; product of the second colour's own matrix; response of the first colour."""
     room = couplings.room
     return room[0, :size], room[1, :size], room[2, :size], room[3, :size], room[4, :size]
 
 
 @njit(cache=True, error_model="numpy", **BORROWS)
 def _solve_first(matrix, sheet, start):
-    """Solves a sheet of the first colour for what the second does to it; `start`: for the right-hand side."""
+    """Solves a sheet of the first colour for the forces of the second; `start`: for the right-hand side."""
     couplings = matrix.couplings
     _, _, p, _, w = _rows(couplings, matrix.res.size)
     span = couplings.colouring.spans[sheet]
@@ -106,7 +109,7 @@ def _solve_first(matrix, sheet, start):
 
 @njit(cache=True, error_model="numpy", **BORROWS)
 def _on_rollers(matrix, sheet, x, sign, rollers):
-    """Adds to the rollers what a sheet does to them where it moves by x, times a sign."""
+    """Adds to the rollers the forces of a sheet that moves by x, times a sign."""
     for j in range(rollers.size):
         low, high = matrix.couplings.colouring.reached[sheet, j]
         rollers[j] += sign * _dot(matrix.border[j, low:high], x[low:high])
@@ -114,7 +117,7 @@ def _on_rollers(matrix, sheet, x, sign, rollers):
 
 @njit(cache=True, error_model="numpy", **BORROWS)
 def _back(matrix, sheet, rollers):
-    """Takes off a sheet of the first colour what the rollers do to it."""
+    """Subtracts from a sheet of the first colour its response to the rollers."""
     couplings, y = matrix.couplings, matrix.eliminated
     span, w = couplings.colouring.spans[sheet], couplings.room[4, : matrix.res.size]
     for j in range(rollers.size):
@@ -126,8 +129,8 @@ def _back(matrix, sheet, rollers):
 
 @njit(cache=True, error_model="numpy", **BORROWS)
 def _second(matrix, sheet, rollers, start):
-    """What a sheet of the second colour makes of its move, less what the first colour and the rollers do to
-    it then; returns its product with the move."""
+    """Multiplies a sheet of the second colour by the reduced matrix: its own matrix, less the response of the
+    first colour and the rollers. Returns the scalar product with the direction."""
     couplings, b = matrix.couplings, matrix.border
     colours = couplings.colouring
     _, q, p, own, w = _rows(couplings, matrix.res.size)
@@ -149,9 +152,9 @@ def _second(matrix, sheet, rollers, start):
 
 @njit(cache=True, error_model="numpy", **BORROWS)
 def _first(matrix, rollers, start):
-    """What the first colour and the rollers do where the second moves, or at the right-hand side (`start`),
-    and what that does to the second; returns the product of that with the move. `rollers`: what they begin
-    with."""
+    """Multiplies the direction of the second colour by the reduced matrix, or reduces the right-hand side
+    (`start`). Solves for the response of the first colour and the rollers, then for each sheet of the second.
+    Returns the scalar product with the direction. `rollers`: their right-hand side."""
     colours = matrix.couplings.colouring
     _, _, p, _, w = _rows(matrix.couplings, matrix.res.size)
     if not start:
@@ -176,7 +179,8 @@ def _first(matrix, rollers, start):
 
 @njit(cache=True, error_model="numpy", **BORROWS)
 def _precondition(matrix, sheet):
-    """Solves a sheet of the second colour for what is left of it; returns the square of that, measured so."""
+    """Solves a sheet of the second colour for its residual, with the band as preconditioner; returns the
+    square of the residual in that norm."""
     couplings = matrix.couplings
     r, z, _, _, _ = _rows(couplings, matrix.res.size)
     span = couplings.colouring.spans[sheet]
@@ -189,8 +193,8 @@ def _precondition(matrix, sheet):
 
 @njit(cache=True, error_model="numpy", **BORROWS)
 def _split(matrix):
-    """Begins the method: what is left of the second colour, and its first direction. Returns the square of
-    the residual, and whether that of each sheet is as little as it may be."""
+    """Begins the method: sets the residual of the second colour and the first direction. Returns the square
+    of the residual, and True if that of each sheet is below its limit."""
     res, colours = matrix.res, matrix.couplings.colouring
     r, z, p, own, w = _rows(matrix.couplings, res.size)
     total, enough = 0.0, True
@@ -212,8 +216,8 @@ def _split(matrix):
 
 @njit(cache=True, error_model="numpy", **BORROWS)
 def _step(matrix, far):
-    """Goes so far in the direction of the method, and solves for what is left of the second colour. Returns
-    as _split."""
+    """Moves by `far` times the direction, and solves for the remaining residual of the second colour. Returns
+    the same as _split."""
     res, colours = matrix.res, matrix.couplings.colouring
     r, z, p, _, w = _rows(matrix.couplings, res.size)
     total, enough = 0.0, True
@@ -233,7 +237,7 @@ def _step(matrix, far):
 
 @njit(cache=True, error_model="numpy", **BORROWS)
 def _turn(matrix, turn):
-    """The next direction of the method, which keeps so much of the last one."""
+    """Computes the next direction: the preconditioned residual plus `turn` times the last direction."""
     colours = matrix.couplings.colouring
     r, z, p, own, _ = _rows(matrix.couplings, matrix.res.size)
     for sheet in range(colours.of.size):
@@ -247,13 +251,13 @@ def _turn(matrix, turn):
 def solve_coloured(matrix, most, least):
     """Solves band, border and couplings in place, where the sheets have two colours.
 
-    The method ends after `most` iterations, or where the square of the residual, measured with the
-    preconditioner, is `least` of what it was, or in each sheet no more than enough.
+    The method ends after `most` iterations, or where the squared residual, in the norm of the preconditioner,
+    is below `least` of its initial value, or below Colouring.enough in each sheet.
     """
     couplings, res, resb = matrix.couplings, matrix.res, matrix.resb
     size = res.size
     own, rollers = couplings.room[3], couplings.room[4, size:]
-    # the first colour as if the second stood still, and what that does to the second
+    # the first colour with the second one fixed, and its forces on the second
     for l in range(size):
         own[l] = res[l]
     for j in range(resb.size):
@@ -266,7 +270,7 @@ def solve_coloured(matrix, most, least):
     for _ in range(most):
         if not left > least * first or enough:
             break
-        # what the first colour does where the second moves by p, and what that does to the second
+        # response of the first colour to a motion p of the second, and its forces on the second
         for j in range(resb.size):
             rollers[j] = 0.0
         along = _first(matrix, rollers, False)

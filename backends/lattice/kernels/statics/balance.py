@@ -2,10 +2,10 @@
 
 At rest a contact has its elastic force only. Rollers that can turn keep their angle: nothing turns them.
 
-A step turns the boxes as Newton's method says, and places them as a chain does (see chain.follow). Where not
-all joints can have the gaps that it says, the excess is balanced in the next iteration, but does not stiffen
-it: the stiffness is that of the forces which the last step was to make. Steps end where the force along them
-changes its sign.
+A step turns the boxes by the Newton step, and then places them as chains (see chain.follow). Where not all
+joints can have the gaps of that step, the next iteration balances the excess. That excess does not enter the
+stiffness, which is evaluated with the forces that the last step was to reach. Steps end where the force along
+them changes its sign.
 """
 
 from __future__ import annotations
@@ -45,8 +45,8 @@ from mdlgen.program.kernel import njit
 
 @njit(cache=True, error_model="numpy")
 def _residual(tables, level, place, lists, blank, rest):
-    """Forces on the free boxes and on slides into `rest`. Returns the largest [N], with torques over half a
-    box, its body, and how many contacts touch."""
+    """Writes the forces on the free boxes and on slides into `rest`. Returns the largest [N], where torques
+    count over half a box; its body; and how many contacts touch."""
     bodies, gravity, nodes = tables.bodies, tables.gravity, tables.nodes
     x, r, s = place
     touched, results, near = lists
@@ -84,8 +84,9 @@ def _residual(tables, level, place, lists, blank, rest):
 
 @njit(cache=True, error_model="numpy")
 def _newton(matrix, plain, shift, load, rest, step):
-    """Solves for a step. Returns the part of the stiffest that the diagonal had to be given for the matrix to
-    be positive, `shift` or more; -1 where nothing helps. `plain` is room for what is factored in place."""
+    """Solves for a step. Returns the shift of the diagonal, relative to its largest entry, that makes the
+    matrix positive definite: `shift` or more; -1 where none does. `plain`: scratch for copies of the
+    matrices."""
     a, b, d, y, corner = matrix
     (on_boxes, on_slides), (moves, slides) = rest, step
     band, square = plain
@@ -115,8 +116,8 @@ def _newton(matrix, plain, shift, load, rest, step):
 
 @njit(cache=True, error_model="numpy")
 def _longest(bodies, joints, nodes, step, reach):
-    """Which part of a step may be taken, and how far all of it goes [rad, parts of a box]. `reach` [mm]
-    bounds how far boxes and slides go where there are contacts to run into."""
+    """Part of a step that may be taken, and the length of the whole step [rad, parts of a box]. `reach` [mm]
+    bounds the motion of boxes and slides in scenes with contacts."""
     moves, slides = step
     turned = moved = far = 0.0
     for j in range(joints.size):
@@ -138,7 +139,7 @@ def _longest(bodies, joints, nodes, step, reach):
 
 @njit(cache=True, error_model="numpy")
 def _along(rest, step):
-    """Work of the forces that are left, along a step [N mm]."""
+    """Work of the residual forces along a step [N mm]."""
     total = 0.0
     for k in range(2):
         for i in range(rest[k].size):
@@ -150,10 +151,10 @@ def _along(rest, step):
 def equilibrium(tables, size, level, load, least, reach, place, lists):
     """Moves a place (x, r, slides s) to balance at a part of weights and loads; springs press fully.
 
-    size: (border, height of the band); lists: room for touching pairs, what they do, and near pairs.
-    `load` [N] is what residuals are measured by, `least` how much of the stiffest is always added to the
-    diagonal (for sheets that nothing but contacts holds), `reach` [mm] the longest step. Returns (whether
-    balance was found, iterations, the body that is pushed most, and by how much of the load).
+    size: (border, height of the band); lists: scratch for touching pairs, their results, and near pairs.
+    `load` [N] scales residuals. `least` is the shift of the diagonal, relative to its largest entry, that is
+    always added (for sheets that only contacts hold). `reach` [mm] is the longest step. Returns (True if
+    balance was found, iterations, body with the largest residual, that residual relative to the load).
     """
     bodies, joints, loads, nodes, points = (
         tables.bodies,
@@ -179,7 +180,7 @@ def equilibrium(tables, size, level, load, least, reach, place, lists):
     hard = 0.0
     for j in range(joints.size):
         hard = max(hard, joints[j].k[0], joints[j].k[1], joints[j].k[2])
-    # forces that round-off of the positions alone makes
+    # forces due to round-off of the positions
     far = 0.0
     for k in range(x.shape[0]):
         for i in range(3):
@@ -229,8 +230,8 @@ def equilibrium(tables, size, level, load, least, reach, place, lists):
 
 @njit(cache=True, error_model="numpy")
 def stands(tables, level, least, slow, place, lists, matrix):
-    """Whether a balance stands: whether the stiffness of what may move is positive, with `slow`^2 [1/ms^2]
-    times its inertia and with what round-off makes of it; `least` as of `equilibrium`.
+    """True if a balance is stable: its stiffness matrix is positive definite after `slow`^2 [1/ms^2] times
+    the inertia, and the round-off error of its entries, are added; `least` as in `equilibrium`.
 
     That stiffness is left in `matrix`, which is zero before: its band, its border and its corner.
     """
@@ -264,7 +265,7 @@ def stands(tables, level, least, slow, place, lists, matrix):
             ease, twist = max(ease, abs(a[n, i, i])), max(twist, abs(a[n, 3 + i, 3 + i]))
     for n in range(many):
         body = bodies[nodes[n]]
-        # of a box the least about any axis: what stands with it stands with all
+        # least moment of inertia of a box: stability with it implies stability with the others
         turning = min(body.inertia[0], body.inertia[1], body.inertia[2])
         for i in range(3):
             a[n, i, i] += slow * slow * body.mass + least * ease + NOISE * abs(a[n, i, i])

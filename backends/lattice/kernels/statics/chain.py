@@ -1,8 +1,8 @@
-"""Chains of boxes: where boxes that turn have to stand for their joints to keep together.
+"""Chains of boxes: the places of boxes with given rotations at which their joints have given gaps.
 
 Boxes that turn by a finite angle and move along straight lines would stretch their joints, which are 1e5
-times stiffer along the sheet than they are to bend, and more for a hard membrane. So boxes turn as a step
-says, and stand where their joints have the gaps that it says: a chain stays a chain.
+times stiffer along the sheet than in bending, and more for a stiff membrane. So boxes turn as a step
+prescribes, and are placed so that their joints have the gaps that it prescribes.
 """
 
 from __future__ import annotations
@@ -26,7 +26,7 @@ from mdlgen.program.kernel import njit
 
 @njit(cache=True, error_model="numpy")
 def link(bodies, joints, ground, a):
-    """Sets the band to the joints as springs of one stiffness between points, and factors it."""
+    """Sets the band to a network of springs of equal stiffness, one per joint, and factors it."""
     a[:] = 0.0
     for n in range(a.shape[0]):
         for i in range(6):
@@ -45,7 +45,7 @@ def link(bodies, joints, ground, a):
 
 @njit(cache=True, error_model="numpy")
 def _go(bodies, nodes, part, step, before, place):
-    """Boxes turn and move by a part of a step, and rollers slide."""
+    """Turns and moves boxes, and slides rollers, by a part of a step."""
     moves, slides = step
     x0, r0, s0 = before
     x, r, s = place
@@ -66,24 +66,24 @@ def _go(bodies, nodes, part, step, before, place):
 
 @njit(cache=True, error_model="numpy")
 def _gap(joint, one, x, r):
-    """Arms of a joint on both bodies, and what is between their ends [mm]."""
+    """Arms of a joint on both bodies, and the gap between their ends [mm]."""
     ra, rb = rotate(mat(r, one), three(joint.ra)), rotate(mat(r, joint.b), three(joint.rb))
     return ra, rb, sub(add(vec(x, joint.b), rb), add(vec(x, one), ra))
 
 
 @njit(cache=True, error_model="numpy")
 def opening(joint, one, x, r):
-    """What is between the ends of a joint on body `one` and on its second one [mm]."""
+    """Gap between the ends of a joint on body `one` and on its second one [mm]."""
     _, _, gap = _gap(joint, one, x, r)
     return gap
 
 
 @njit(cache=True, error_model="numpy")
 def follow(tables, links, part, step, before, place, y, gaps):
-    """The place (x, r, s) after a part of a step (of boxes, of slides) from the one before.
+    """Sets the place (x, r, s) after a part of a step (of boxes, of slides) from the one before.
 
-    Boxes turn by it, and stand where the gaps of their joints (joints, 3) [mm] are what it makes of them,
-    turned with the boxes; in the mean, where not all can be. `y` is room to work in.
+    Boxes turn by it. Their places give joints the gaps (joints, 3) [mm] that the step prescribes, turned with
+    the boxes; in the mean, where not all joints can have these. `y` is scratch.
     """
     bodies, joints, nodes = tables.bodies, tables.joints, tables.nodes
     moves, _slides = step

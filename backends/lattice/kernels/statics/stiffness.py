@@ -1,6 +1,6 @@
-"""Stiffness of what is at rest: how forces of joints, loads and contacts grow as bodies move and turn.
+"""Stiffness of a state at rest: the derivative of the forces of joints, loads and contacts.
 
-It is exact but for torques out of balance, which make it unsymmetric: half of that is taken.
+It is exact except for torques out of balance, which make it unsymmetric: its symmetric part is used.
 """
 
 from __future__ import annotations
@@ -38,8 +38,8 @@ from mdlgen.program.kernel import njit
 
 @njit(cache=True, error_model="numpy")
 def _hinge(theta, e, k):
-    """Couple of a joint turned by theta, in its middle frame, and the growth of the couple with the turn of
-    one body against the other (row by row); see mechanics.bushing.bushing_pair."""
+    """Couple of a joint rotated by theta, in its middle frame, and its derivative with respect to the
+    rotation of one body against the other (row by row); see mechanics.bushing.bushing_pair."""
     t2 = dot(theta, theta)
     # sine and cosine of half the angle, the one over it, and their derivatives by t2 (with a dash: 1)
     if t2 > 1e-4:
@@ -96,8 +96,8 @@ def _stretch(m, k, gap):
 
 @njit(cache=True, error_model="numpy")
 def _growth(joint, points, gap, x, r, one, g):
-    """Change of the forces on both bodies of a joint (6 and 6), were its gap `gap`: a row of g (12, 12) for
-    each move of the bodies."""
+    """Derivative of the forces on both bodies of a joint (6 and 6) with the gap `gap`: a row of g (12, 12)
+    for each motion of the bodies."""
     two = joint.b
     ma, mb = mat(r, one), mat(r, two)
     fa = matmul(ma, nine(joint.fa))
@@ -106,7 +106,7 @@ def _growth(joint, points, gap, x, r, one, g):
     ra, rb = rotate(ma, three(joint.ra)), rotate(mb, three(joint.rb))
     apart = sub(vec(x, two), vec(x, one))
     couple, growth = _hinge(theta, three(joint.e), joint.k)
-    # of a curve the chord makes the force, and the slope its growth
+    # on a curve the force is that of the secant, and its growth is the slope
     chord, k = three(joint.k), three(joint.k)
     if joint.first >= 0:
         own = back(m, gap)
@@ -135,13 +135,14 @@ def _growth(joint, points, gap, x, r, one, g):
             more = sub(cross(swing, force), _stretch(m, k, sub(opens, cross(swing, gap))))
             change = sub(cross(swing, torque), rotate(m, rotate(growth, eta)))
         shift = scale(0.5, cross(opens, force))
-        # the arm of b reaches half of what opens less where b moves, and half more where its own end turns
+        # forces act in the middle of the gap: if it opens, the arm of b changes by -1/2 of that where b
+        # moves, by +1/2 where b turns
         tb = add(add(change, scale(-1.0 if i < 3 else 1.0, shift)), cross(qb, more))
         ta = scale(-1.0, add(add(change, shift), cross(qa, more)))
         for l in range(3):
             g[6 + i, l], g[6 + i, 3 + l] = -more[l], ta[l]
             g[6 + i, 6 + l], g[6 + i, 9 + l] = more[l], tb[l]
-    # to move one body is to move both and the other back, and forces turn with both
+    # a motion of one body equals one of both and the opposite one of the other; forces turn with both
     for i in range(3):
         turn = _unit(i)
         arm = cross(turn, apart)
@@ -172,7 +173,7 @@ def sheets_into(bodies, joints, points, loads, level, gaps, x, r, a):
                     a[na, c, 6 * (nb - na) + i] -= 0.5 * (g[c, 6 + i] + g[6 + i, c])
                 elif nb >= 0 and na > nb:
                     a[nb, c, 6 * (na - nb) + i] -= 0.5 * (g[6 + c, i] + g[i, 6 + c])
-    for l in range(loads.size):  # a dead load turns its body the less the further it has turned
+    for l in range(loads.size):  # the torque of a dead load changes as its body turns
         b = loads[l].body
         node = bodies[b].node
         if node < 0:
@@ -187,8 +188,8 @@ def sheets_into(bodies, joints, points, loads, level, gaps, x, r, a):
 
 @njit(cache=True, error_model="numpy")
 def rollers_into(bodies, b, d):
-    """Sets the border b and its corner d to the springs of what slides; what turns has nothing that turns it,
-    and any stiffness does."""
+    """Sets the border b and its corner d to the springs of slides. Nothing turns spins at rest, so they get
+    an arbitrary stiffness."""
     b[:] = 0.0
     d[:] = 0.0
     for k in range(bodies.size - 1):

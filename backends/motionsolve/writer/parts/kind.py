@@ -1,4 +1,4 @@
-"""What a deck has of a kind of part, behind the bodies."""
+"""Rows of a deck for a kind of part, after the bodies."""
 
 from __future__ import annotations
 
@@ -13,19 +13,19 @@ LAST = 4
 
 
 class Kind(Generic[P]):
-    """What a deck has of one kind; what it has nothing of adds nothing."""
+    """Rows of a deck for one kind of part; a method that is not overridden adds none."""
 
-    rank: ClassVar[int] = LAST  # where its rows stand among those of other kinds
+    rank: ClassVar[int] = LAST  # order of its rows among those of other kinds
 
     def add_frame(self, deck: Deck, model: Model, part: P) -> None:
-        """Its axes."""
+        """Adds its axes."""
 
     def shown(self, model: Model, part: P) -> list[Shown]:
         """The boxes that show it."""
         return []
 
     def add_shell(self, deck: Deck, model: Model, part: P) -> None:
-        """The triangles that show it."""
+        """Adds the triangles that show it."""
 
     def add_joints(self, deck: Deck, model: Model, part: P) -> None:
-        """Joints, springs, drives, and what is recorded."""
+        """Adds joints, springs, drives, and recorded quantities."""

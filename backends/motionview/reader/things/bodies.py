@@ -110,7 +110,7 @@ class Body(Thing):
         return super().compute(key)
 
     def markers(self) -> list[PartMarker]:
-        """What the deck has for it."""
+        """Markers of the body in the deck."""
         found = [self.ask("lprf"), self.ask("cm")]
         if self.ask("from_graphics"):
             found.append(self.ask("geomprops"))

@@ -40,7 +40,7 @@ class Curve(Thing):
         return columns[0], columns[1]
 
     def p_extrapolates(self) -> str:
-        """What stands behind the numbers: nothing, or how the curve goes on."""
+        """Arguments after the numbers: none, or the extrapolation of the curve."""
         chosen, points = self.chosen("setcurve"), self.ask("points")
         if chosen is None or points is None:
             return ""

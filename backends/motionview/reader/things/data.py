@@ -45,7 +45,7 @@ class Option(Thing):
         return tuple(self.given(3 + k) for k in range(count))
 
     def p_current_index(self) -> float:
-        """Of the one that is chosen, from 0; the first where none is."""
+        """Index of the chosen option, from 0; the first where none is chosen."""
         found = self.settings("setoption")
         if not found:
             return 0.0

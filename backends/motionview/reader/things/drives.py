@@ -79,7 +79,7 @@ class ContactThing(Thing):
         return tuple(word for word in words if word in ("true", "false"))
 
     def p_numbers(self) -> dict[str, float]:
-        """What *SetContact says, by the documented order."""
+        """Values of *SetContact, by the documented order."""
         chosen = self.chosen("setcontact")
         if chosen is None:
             return {}

@@ -1,4 +1,4 @@
-"""What stands in the model that a definition is made for: named and of a kind, and nothing else is known."""
+"""Entities of the model that a definition is made for: only their names and kinds are known."""
 
 from __future__ import annotations
 

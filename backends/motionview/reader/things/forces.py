@@ -109,7 +109,7 @@ class _Link(Thing):
     part = ""
 
     def markers(self) -> list[PartMarker]:
-        """What the deck has for it."""
+        """Markers of the force in the deck."""
         return [self.ask("i"), self.ask("j")]
 
     def marker_records(self) -> list[tuple[str, dict[str, Any]]]:

@@ -50,7 +50,7 @@ class _Triple(Thing):
 
 
 class Point(_Triple):
-    """A place [mm]. Of a pair the left one leads, also where both are set (seen in a deck)."""
+    """A place [mm]. The left one of a pair defines both, also where both are set (seen in a deck)."""
 
     kind = "Point"
     setter = "setpoint"

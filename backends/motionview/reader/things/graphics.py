@@ -39,7 +39,7 @@ class Graphic(Thing):
         return None
 
     def p_solid(self) -> Mass | None:
-        """What it weighs, of steel."""
+        """Mass properties of the solid, of steel."""
         if self.shape == "BOX":
             return box(self.ask("origin"), self.ask("axes"), self.ask("lengths"))
         if self.shape == "SPHERE":
@@ -73,7 +73,7 @@ class Graphic(Thing):
     # -- sizes
 
     def p_lengths(self) -> Vector:
-        """Of a box along its own axes [mm]."""
+        """Lengths of a box along its own axes [mm]."""
         return self.ask("box")[2]
 
     def p_r1(self) -> float:

@@ -57,7 +57,7 @@ class Joint(Thing):
         return self.related(3, "Body")
 
     def p_isbush(self) -> bool:
-        """Whether it is a bushing now: it may be, and the model's compliance is on."""
+        """True if it is a bushing at present: it may be one, and the model's compliance is on."""
         if self.statement.args[-1].upper() != "ALLOW_COMPLIANCE":
             return False
         return self.scope.value_of("Op_Compliant").attribute("value", "value", 0) == "Yes"
@@ -116,7 +116,7 @@ class Joint(Thing):
         return Directions(self, self.ask("origin"), self.statement, self.scope, at)
 
     def markers(self) -> list[PartMarker]:
-        """What the deck has for it."""
+        """Markers of the joint in the deck."""
         return [self.ask("i"), self.ask("j")]
 
     def record(self) -> dict[str, Any]:

@@ -66,7 +66,7 @@ class System(Thing):
         raise Trouble("dangling", f"{self} has no {name}", shift)
 
     def _argument(self, name: str) -> Any:
-        """What was given, in the scope where the instance stands; else the default of the attachment."""
+        """Value given in the scope of the instance; else the default of the attachment."""
         assert self.inner is not None
         parameter = self.inner.parameters[name]
         outside = self.inner.parent

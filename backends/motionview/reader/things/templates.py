@@ -35,7 +35,7 @@ class Template(Thing):
     kind = "Template"
 
     def p_text(self) -> str:
-        """What the template writes."""
+        """Text that the template writes."""
         found = self.ask("pasted")
         if found is None:
             message = f"{self} has statements of its own, which are not run: its text is not known"

@@ -1,6 +1,6 @@
-"""What all entities have: a name, a label, a place, and properties that are found when asked for.
+"""Base class of all entities: a name, a label, a place, and properties that are evaluated on demand.
 
-A property `x` is a method `p_x`; the World keeps its value.
+A property `x` is a method `p_x`; the World caches its value.
 """
 
 from __future__ import annotations
@@ -92,12 +92,12 @@ class Thing:
     # -- arguments
 
     def twin(self) -> Thing:
-        """The one on the other side."""
+        """The entity on the other side."""
         members = self.declaration.members
         return members.r if self.side == "l" else members.l
 
     def own(self, value: Any) -> Any:
-        """Of a pair the one of this side."""
+        """The value of this side, where it is a pair."""
         if value.__class__ is not Pair:
             return value
         if not self.side:
@@ -179,7 +179,8 @@ class Thing:
         return None
 
     def shared(self, scope: Scope, key: tuple[Any, ...], find: Callable[[], Any]) -> Any:
-        """What depends on nothing but some arguments: found once for all statements that have the same."""
+        """A value that depends only on some arguments: computed once for all statements with the same
+        ones."""
         whole = (self.side, key)
         found = scope.shared.get(whole, self)
         if found is self:
@@ -192,7 +193,7 @@ class Thing:
         return bool(found) and self.world.value(found[-1].statement, 1, found[-1].scope) is True
 
     def record(self) -> dict[str, Any]:
-        """What the list of values says of it."""
+        """Record of the entity in the list of values."""
         return {}
 
     def markers(self) -> list[Any]:

@@ -1,1 +1,1 @@
-"""Parts of the machine in a text: a file for each kind, called as one is, and its template beside others."""
+"""Parts of the machine in an MDL file: one module per kind, named like it; the templates are together."""

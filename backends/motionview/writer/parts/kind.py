@@ -1,4 +1,4 @@
-"""What a text has of a kind of part: a row for its template, and the names of what shows it."""
+"""Rows of a kind of part for its template in an MDL file, and the names of its graphics."""
 
 from __future__ import annotations
 
@@ -21,12 +21,12 @@ class PartView:
 
 
 class Kind(Generic[P]):
-    """What a text has of one kind."""
+    """Contents of an MDL file for one kind of part."""
 
     def view(self, model: Model, part: P, given: list[Value]) -> PartView:
         """The row of a part; `given` are the values of its data set."""
         raise NotImplementedError
 
     def graphics(self, part: P) -> list[str]:
-        """Names of what shows a part."""
+        """Names of the graphics of a part."""
         raise NotImplementedError

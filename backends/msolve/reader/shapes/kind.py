@@ -1,4 +1,4 @@
-"""What is known of a shape."""
+"""Base class for the properties of a shape."""
 
 from __future__ import annotations
 

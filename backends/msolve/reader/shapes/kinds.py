@@ -1,4 +1,4 @@
-"""All shapes, by the names of their classes; a file beside this one is found."""
+"""All shapes, by the names of their classes; each module of this package is found."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What a script has of a kind of part: its values, and what contacts act on."""
+"""Contents of a script for a kind of part: its values, and the graphics on which contacts act."""
 
 from __future__ import annotations
 
@@ -13,24 +13,24 @@ Table = dict[str, Any]
 
 
 class Kind(Generic[P]):
-    """What a script has of one kind. The function that makes one stands in a template called as one is."""
+    """Contents of a script for one kind. The function that makes a part is in the template named like it."""
 
-    note: ClassVar[str] = ""  # above the values
-    pressed: ClassVar[bool] = False  # some slide on springs
-    recorded: ClassVar[bool] = False  # something is recorded of some
+    note: ClassVar[str] = ""  # comment above the values
+    pressed: ClassVar[bool] = False  # true where some slide on springs
+    recorded: ClassVar[bool] = False  # true where quantities of some are recorded
 
     def table(self, model: Model, part: P) -> Table:
         """The values of a part."""
         raise NotImplementedError
 
     def graphics(self, part: P, side: Side) -> int:
-        """How many graphics a contact with one side of it acts on."""
+        """Number of graphics on which a contact with one side of it acts."""
         return 1
 
     def is_round(self, part: P, side: Side) -> bool:
-        """Whether that is a cylinder."""
+        """True if the graphic of that side is a cylinder."""
         return False
 
     def labels(self, part: P) -> Iterator[str]:
-        """Labels of what is made beside its body, by which it is found again."""
+        """Labels of the objects that are made in addition to its body, by which the reader finds them."""
         yield from ()
