@@ -11,7 +11,7 @@ from mdlgen.spec.motor import Motor
 from mdlgen.spec.quantities import default, quantity
 from mdlgen.spec.strict import Strict, fail
 
-# A solver keeps them beside each body, and a text writes them into one expression.
+# A solver stores them in the record of each body, and an MDL file writes them into one expression.
 MOST_CORNERS = 16
 
 
