@@ -15,7 +15,7 @@ import numpy as np
 from mdlgen.model.parts.guide import Facet
 from mdlgen.model.tables import Floats, Model, RollerPart
 
-DEEP = 0.25  # thickness of a box in times the radius
+DEEP = 0.25  # thickness of a box relative to the radius
 
 
 class Side(NamedTuple):
@@ -23,7 +23,7 @@ class Side(NamedTuple):
 
     suffix: str  # of the statement's name
     sector: int  # -1: all of it
-    friction: float  # in times that of the contact
+    friction: float  # relative to that of the contact
     stiffness: float
     restitution: float  # nan: that of the contact
 

@@ -17,7 +17,7 @@ from mdlgen.model.tables import (
     RollerPart,
 )
 
-CHEEK = 0.4, 0.12  # breadth and thickness of an arm beside its roller, in times the roller's radius
+CHEEK = 0.4, 0.12  # breadth and thickness of an arm beside its roller, relative to the roller's radius
 
 
 @dataclass(frozen=True)

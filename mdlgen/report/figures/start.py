@@ -20,7 +20,7 @@ from mdlgen.report.sheets import parts_of_sheets
 
 _TONES = (("x", "#d55e00"), ("y", "#009e73"), ("z", "#0072b2"))
 _WARNS, _PLAIN = "#b13c00", "#1b1e22"
-_BAR = 0.15  # greatest length of the scale, in times the breadth of a panel
+_BAR = 0.15  # greatest length of the scale, relative to the breadth of a panel
 _ORIGIN = (34.0, 38.0)  # of the axes, from the lower left corner [points]
 _JOINT = 0.95  # of a box's lengths, so that the grid is seen
 _LETTER, _LINE = 4.2, 8.5  # breadth of a letter of a name and height of its line [points]
