@@ -1,4 +1,4 @@
-"""What text and deck have of a rim: boxes that show its sectors, and a contact for each sector.
+"""A rim in MDL file and deck: boxes that show its sectors, and a contact for each sector.
 
 A part of a cylinder has no form in either that is known, so each sector is shown by boxes, as an arc of a
 guide is: each touches the round in its middle.
@@ -19,7 +19,7 @@ DEEP = 0.25  # thickness of a box relative to the radius
 
 
 class Side(NamedTuple):
-    """What one body brings into a contact statement: all of it, or a sector of its rim."""
+    """The part of a body in a contact statement: all of it, or a sector of its rim."""
 
     suffix: str  # of the statement's name
     sector: int  # -1: all of it

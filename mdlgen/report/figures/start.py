@@ -80,8 +80,8 @@ def _over(model: Model, parts: list[Known], panel: Any, view: Floats, shown: Fra
 
 
 def _names(parts: list[Known], panel: Any, view: Floats, shown: Frame) -> None:
-    """Names beside the parts' middles; one that would lie on another is left out, of those with a warning
-    the last."""
+    """Names next to the parts' middles. A name that would cover another one is left out; names with a warning
+    are placed first."""
     low, high = shown
     box = panel.get_window_extent()
     scale = 72.0 / panel.figure.dpi * min(box.width / (high[0] - low[0]), box.height / (high[1] - low[1]))
