@@ -1,4 +1,4 @@
-"""The pages of samples/ that a suite is shown by, solvers beside each other."""
+"""The pages of samples/ that show a suite, with one column per solver."""
 
 from __future__ import annotations
 

@@ -33,7 +33,7 @@ def cases(quick: bool) -> list[BenchCase]:
 
 
 def _pendulum(start: float, seconds: float) -> BenchCase:
-    """A bar that is hinged at one end and let go at an angle [deg] from the lowest point."""
+    """A bar that is hinged at one end and released at an angle [deg] from the lowest point."""
     hinge = (
         f"[{{sheet: block, at: [{-BAR / 2!r} mm, -40 mm], fix: [x, y, z]}},"
         f" {{sheet: block, at: [{-BAR / 2!r} mm, 40 mm], fix: [x, z]}}]"
