@@ -129,10 +129,10 @@ def solve(
 ) -> Result:
     """Run a Model. A run that fails returns a Result whose `status` is the reason.
 
-    `progress(time, end, steps, touching)` is called as the run goes on (times in ms, pairs that touch).
+    `progress(time, end, steps, touching)` is called during the run (times in ms, pairs that touch).
     `check_step` runs again at half the step and returns the finer result, with `error_estimate` in the norm
-    of `run.tolerance`. Raises SpecError for a solver that there is not, RefusedError for what it cannot
-    represent.
+    of `run.tolerance`. Raises SpecError for an unknown solver, RefusedError for a Model that the solver
+    cannot represent.
     """
     from mdlgen import registry
 

@@ -7,10 +7,10 @@ import os
 import sys
 
 INTERRUPTED = 130
-# What a command loads and reads stays to its end. To look for what is none of it each few hundred objects, as
-# Python does of itself, takes up to a tenth of the time.
+# Objects that a command loads and reads live to its end. Python would search them for garbage after each few
+# hundred new objects, which takes up to a tenth of the time.
 MANY = 100_000
-# A run makes little that has to be looked for in this way, and has more than that once it is loaded and read.
+# A run makes little garbage of this kind, and has more objects than that once it is loaded and read.
 MANY_IN_A_RUN = 1_000_000
 # Commands that hold much at their end: the tables of the compiler, or all things of a large text.
 LARGE = ("run", "lint", "mdl", "deck", "verify")

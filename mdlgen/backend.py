@@ -1,4 +1,4 @@
-"""What a folder of `mdlgen/backends` offers, as one record named BACKEND."""
+"""The record BACKEND that each folder of `mdlgen/backends` offers."""
 
 from __future__ import annotations
 
@@ -18,9 +18,9 @@ Progress = Callable[[float, float, int, int], None]
 
 @dataclass(frozen=True)
 class Capabilities:
-    """What a backend can do besides."""
+    """Further capabilities of a backend."""
 
-    resumes: bool = False  # its runs can be gone on with to the same bits: see `mdlgen.runs.checkpoint`
+    resumes: bool = False  # its runs can be resumed with identical bits: see `mdlgen.runs.checkpoint`
     threads: int = 1  # of which a run of it has use
 
 

@@ -1,7 +1,7 @@
 """Conditions of rules: comparisons over what sensors see, times, places and parameters, with units checked.
 
-`exit covered and count(exit) < 3`, `gap(entry) < 20 mm`, `time > 30 ms`, `note.x > 120 mm`. What a sensor
-knows is asked for by a word: `covered(exit)` or `exit covered`, `count(exit)`, `gap(exit)`. Values are in the
+`exit covered and count(exit) < 3`, `gap(entry) < 20 mm`, `time > 30 ms`, `note.x > 120 mm`. A word asks for
+the reading of a sensor: `covered(exit)` or `exit covered`, `count(exit)`, `gap(exit)`. Values are in the
 internal units (mm, g, ms, rad).
 """
 
@@ -23,7 +23,7 @@ from mdlgen.units import same
 
 LENGTH, TIME, ANGLE = (1.0, 0.0, 0.0, 0.0), (0.0, 0.0, 1.0, 0.0), (0.0, 0.0, 0.0, 1.0)
 SPEED, RATE = (1.0, 0.0, -1.0, 0.0), (0.0, 0.0, -1.0, 1.0)
-# What a sensor knows; None: yes or no.
+# Readings of a sensor, with their dimension; None: yes or no.
 OF_SENSOR: dict[str, Dimension | None] = {
     "covered": None,
     "clear": None,
@@ -34,7 +34,7 @@ OF_SENSOR: dict[str, Dimension | None] = {
     "position": LENGTH,
     "since": TIME,
 }
-# What is known of a sheet or a probe, and of a roller.
+# Values of a sheet or a probe, and of a roller.
 OF_SHEET: dict[str, Dimension | None] = {
     **dict.fromkeys(("x", "y", "z"), LENGTH),
     **dict.fromkeys(("vx", "vy", "vz", "speed"), SPEED),
@@ -66,8 +66,8 @@ class Condition:
     expression: Expression
 
     def holds(self, known: Known) -> bool:
-        """Whether it holds, with an Amount, or 0 or 1 of what is yes or no, by name. No comparison
-        holds for a value that is not known, nan, nor for one with a division by zero."""
+        """True if it holds. `known` returns an Amount by name, or 0 or 1 for yes or no. No comparison holds
+        if a value is not known, nan, or if it divides by zero."""
         try:
             return bool(self.expression.on(ON, known))
         except (ArithmeticError, ValueError):

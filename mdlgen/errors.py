@@ -1,4 +1,4 @@
-"""What can go wrong, one class per exit code.
+"""The errors, one class per exit code.
 
 Exit codes: 0 done, 2 bad spec, 3 input/output, 4 no usable result, 5 a result whose error is above the
 tolerance or unknown, 6 a requirement of the scene missed, 130 interrupted. A solver that fails is not an

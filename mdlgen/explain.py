@@ -1,4 +1,4 @@
-"""What the codes of `mdlgen check` (W101 ...) and `mdlgen lint` (arity, dangling ...) mean, at length."""
+"""Explanations of the codes of `mdlgen check` (W101 ...) and `mdlgen lint` (arity, dangling ...)."""
 
 from __future__ import annotations
 
@@ -332,7 +332,7 @@ SCENE = {
 
 
 def explain(code: str) -> str:
-    """What a code means and what to do. Raises SpecError for one that there is not."""
+    """The meaning of a code and its remedy. Raises SpecError for an unknown code."""
     known = {**SCENE, **TEXT}
     wanted = code.upper() if code.upper() in known else code.lower()
     if wanted not in known:

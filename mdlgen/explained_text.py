@@ -1,4 +1,4 @@
-"""What the codes of `mdlgen lint` (arity, dangling ...) mean, at length."""
+"""Explanations of the codes of `mdlgen lint` (arity, dangling ...)."""
 
 from __future__ import annotations
 

@@ -42,7 +42,7 @@ class Function(NamedTuple):
 
 @dataclass(frozen=True)
 class Grammar:
-    """What a text may hold."""
+    """The grammar of a text."""
 
     functions: Mapping[str, Function]
     allowed: str  # in words, for errors
@@ -57,7 +57,7 @@ class Grammar:
 
 
 class Arithmetic(Protocol):
-    """What the operations of an expression are computed on."""
+    """The arithmetic on which an expression is computed."""
 
     def number(self, value: float) -> Any: ...
 
@@ -127,7 +127,7 @@ class Expression:
 
     @property
     def plain(self) -> bool:
-        """Whether it is a name and nothing else."""
+        """True if it is a name and nothing else."""
         return isinstance(self.tree, ast.Name) and self.tree.id.startswith("_")
 
     def named(self, node: ast.Name) -> str:
@@ -157,11 +157,11 @@ class Expression:
         return float(found) + 0.0
 
     def on(self, arithmetic: Arithmetic, lookup: Lookup) -> Any:
-        """What it comes to on an arithmetic; raises what that raises, and _Missing, see `value`."""
+        """Its value on an arithmetic; raises the errors of that, and _Missing, see `value`."""
         return self.part(self.tree, arithmetic, lookup)
 
     def part(self, node: ast.expr, arithmetic: Arithmetic, lookup: Lookup) -> Any:
-        """What a part of its tree comes to; as `on`."""
+        """The value of a part of its tree; as `on`."""
         return _Evaluation(self, arithmetic, lookup).of(node)
 
 
@@ -262,7 +262,7 @@ def read(text: str, grammar: Grammar) -> Expression:
 
 
 def _refusal(node: ast.AST, grammar: Grammar, depth: int) -> str:
-    """What is not allowed in a tree; empty where all is."""
+    """The fault of a tree that is not allowed; empty where all is."""
     if depth > grammar.depth:
         return f"is nested deeper than {grammar.depth}"
     inner: Sequence[ast.AST]

@@ -6,7 +6,7 @@ from importlib.util import find_spec
 
 from mdlgen.errors import OutputError
 
-# Package -> extra. What a package needs itself is not named here.
+# Package -> extra. Packages that mdlgen itself needs are not named here.
 EXTRAS = {"exudyn": "exudyn", "matplotlib": "figures", "numba": "compile", "llvmlite": "compile"}
 
 
@@ -21,7 +21,7 @@ def require(package: str) -> None:
 
 
 def advice(missing: str) -> str | None:
-    """What to do where a package cannot be imported; None: no extra has it."""
+    """Advice where a package cannot be imported; None: no extra has it."""
     package = missing.partition(".")[0]
     if package not in EXTRAS:
         return None

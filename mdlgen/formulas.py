@@ -156,7 +156,7 @@ _PER = re.compile(rf"\s*{_NUMBER}\s+1\s*/\s*{UNIT_TEXT}\s*", re.ASCII)
 
 
 def is_formula(text: str, parameters: Mapping[str, object]) -> bool:
-    """Whether a text is meant as a formula, not as one number with its unit."""
+    """True if a text is meant as a formula, not as one number with its unit."""
     if _PER.fullmatch(text):
         return False
     at, words, signs, values, before = 0, [], "", 0, ""
@@ -194,7 +194,7 @@ def formula(text: str) -> Expression:
 
 
 def evaluated(text: str, parameters: Mapping[str, Amount]) -> Amount:
-    """What a formula comes to. Raises ValueError with what is wrong, in one line."""
+    """The value of a formula. Raises ValueError with the fault, in one line."""
     shown = f"{text.strip()[:80]!r}"
     try:
         expression = formula(text)

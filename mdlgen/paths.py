@@ -18,11 +18,11 @@ from platformdirs import user_cache_dir
 
 from mdlgen.errors import OutputError
 
-# What is written to a file: all of it, or what writes it into a stream that is open.
+# Content of a file: all of it, or a function that writes it into an open stream.
 Content = str | bytes | Callable[[BinaryIO], None]
-# Of a text that is read whole: some four sheets of 10,000 boxes.
+# Size of a text file that is read whole: some four sheets of 10,000 boxes.
 MOST_BYTES = 200_000_000
-# What a file is called until it is complete, and after how long one is left over [s].
+# Suffix of a file until it is complete, and age from which such a file counts as left over [s].
 TEMPORARY, STALE = ".mdlgen~", 3600.0
 NOTE = ".together.mdlgen"
 # Folders of the user's cache: machine code of shipped programs, numba's code, templates.
@@ -38,7 +38,7 @@ def _data(folder: str) -> Path:
 
 
 def templates() -> Path:
-    """Folder of the Jinja templates: inside the installed package, or beside it in a checkout."""
+    """Folder of the Jinja templates: inside the installed package, or next to it in a checkout."""
     return _data("templates")
 
 
@@ -48,7 +48,7 @@ def samples() -> Path:
 
 
 def user_cache() -> Path:
-    """The user's folder for what can be made anew; MDLGEN_CACHE names another one."""
+    """The user's folder for files that can be made again; MDLGEN_CACHE names another one."""
     named = os.environ.get("MDLGEN_CACHE")
     return Path(named) if named else Path(user_cache_dir("mdlgen", appauthor=False))
 
@@ -233,7 +233,7 @@ def _follow(note: Path) -> None:
 
 
 def _stage(path: Path, content: Content) -> Path:
-    """A complete temporary file beside `path`."""
+    """A complete temporary file in the folder of `path`."""
     if path.is_symlink():
         raise OutputError(f"{path}: is a symbolic link; name the file itself")
     if path.is_dir():
@@ -285,7 +285,7 @@ def _rename(staged: list[tuple[Path, Path]]) -> None:
 
 
 def _way_back(path: Path, kept: Path) -> Callable[[], None]:
-    """What brings back `path` as it is now, through another name for it."""
+    """A function that restores `path` as it is now, through another name for it."""
     if not path.exists():
         return lambda: os.unlink(path)
     try:

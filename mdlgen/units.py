@@ -79,7 +79,7 @@ def _powers(text: str) -> str:
 
 
 def _with_point(comma: re.Match[str]) -> str:
-    """What a number with commas may mean: a decimal comma, or thousands."""
+    """The possible meanings of a number with commas: a decimal comma, or thousands."""
     number, rest = comma[1], comma[2]
     meant = []
     if number.count(",") == 1 and not rest.startswith("."):
@@ -166,7 +166,7 @@ def check_unit(text: str, dimension: Sequence[float], expected: str) -> None:
 
 
 def same(one: Sequence[float], other: Sequence[float]) -> bool:
-    """Whether two dimensions are one, but for the round-off of fractional powers."""
+    """True if two dimensions are equal, but for the round-off of fractional powers."""
     return all(abs(a - b) <= 1e-9 for a, b in zip(one, other, strict=True))
 
 
@@ -187,7 +187,7 @@ def unit_of(dimension: Sequence[float]) -> str:
 
 
 def is_unit(name: str) -> bool:
-    """Whether a name is that of a unit."""
+    """True if a name is that of a unit."""
     return name in _NAMES
 
 

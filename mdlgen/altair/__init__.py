@@ -1,1 +1,1 @@
-"""What texts for Altair's programs say of a Model, and `verify` looks for; the Model knows none of it."""
+"""Contents of MDL files and scripts for Altair's programs, for `verify` too; the Model does not use it."""

@@ -1,7 +1,7 @@
-"""Which boxes and which joints of a sheet are alike, whatever its values: one formula serves them all.
+"""Groups equal boxes and equal joints of a sheet into classes, by layout: one formula serves each class.
 
-A text writes the values of each class once. Boxes are alike where they have the same column and row lengths
-and the same shares in zones; lengths that are given box by box are never the same value.
+An MDL file writes the values of each class once. Boxes are in one class if they have the same column and row
+lengths and the same shares in zones; lengths that are given box by box are never equal.
 """
 
 from __future__ import annotations

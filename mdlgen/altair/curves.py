@@ -27,13 +27,13 @@ def straight_points(curves: Curves, number: int) -> tuple[Floats, Floats]:
     """Strains and stresses [MPa], compression first, between which straight lines are the curve.
 
     They are as close as TEXT_TOLERANCE asks: a line of length h is off by h^2/8 times the second derivative.
-    A curve that goes on beyond its last point does so for TEXT_BEYOND times its strain.
+    A curve that continues beyond its last point does so for TEXT_BEYOND times its strain.
     """
     part = slice(curves.start[number], curves.start[number + 1])
     x, y, m = curves.strain[part], curves.stress[part], curves.slope[part]
     h, rise = np.diff(x), np.diff(y) / np.diff(x)
     bends = np.abs([6 * rise - 4 * m[:-1] - 2 * m[1:], 6 * rise - 2 * m[:-1] - 4 * m[1:]]).max(axis=0)
-    # no coarser than what is beside it asks: where the pitch jumps at a bend, splines swing
+    # no coarser than the neighbouring pieces: where the pitch jumps at a bend, splines oscillate
     sharp = np.concatenate([[0.0], bends / h, [0.0]])
     sharp = np.maximum(sharp[1:-1], np.maximum(sharp[:-2], sharp[2:]))
     pieces = np.ceil(h * np.sqrt(sharp / (8 * TEXT_TOLERANCE * y[-1]))).astype(int)

@@ -1,4 +1,4 @@
-"""What a text says of the edges of plates."""
+"""The note in an MDL file about the edges of plates."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from mdlgen.model.tables import ON_PLATES, Model
 
 
 def edge_note(model: Model) -> tuple[str, ...]:
-    """What a text says of the edges of the plates that sheets touch."""
+    """The note in an MDL file about the edges of the plates that sheets touch."""
     if not np.isin(model.contacts.kind, ON_PLATES).any():
         return ()
     return (

@@ -1,4 +1,4 @@
-"""What a text says of the pairs that it lists."""
+"""The note in an MDL file about the pairs that it lists."""
 
 from __future__ import annotations
 

@@ -14,7 +14,7 @@ from mdlgen.model.tables import MachinePart, Model
 
 
 def by_kind(package: ModuleType) -> dict[type[MachinePart], Any]:
-    """What the files of a package say of kinds of parts, as KIND, each called as one of its kind is; a kind
+    """Modules of a package for kinds of parts, by their KIND. Each file has the name of its kind; a kind
     without a file is left out."""
     names = {kind.part: f"{package.__name__}.{kind.name}" for kind in KINDS}
     return {part: import_module(name).KIND for part, name in names.items() if find_spec(name) is not None}

@@ -47,6 +47,7 @@ def part_of(label: str, part: int, parts: int) -> str:
 
 
 def whole(label: str) -> tuple[str, int, int] | None:
-    """What such a label is of: the label of all, the part, and how many there are; None for another label."""
+    """The label of the whole, the number of the part, and how many parts there are; None for another
+    label."""
     found = _PART.fullmatch(label)
     return None if found is None else (found[1], int(found[2]), int(found[3]))

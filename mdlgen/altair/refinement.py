@@ -1,7 +1,7 @@
 """How finely MotionSolve meshes graphics, whose contacts it computes on meshes.
 
 Every pair but of two spheres, or a sphere and a mesh, is meshed (help on contact, 2021), so these levels
-decide the force. What mesh a level makes could not be read anywhere: 3 is what MotionView writes by itself.
+decide the force. No document gives the mesh of a level: 3 is what MotionView writes by itself.
 """
 
 from __future__ import annotations

@@ -1,4 +1,4 @@
-"""What text and deck have of a rim: boxes that show its sectors, and a contact for each sector.
+"""A rim in MDL file and deck: boxes that show its sectors, and a contact for each sector.
 
 A part of a cylinder has no form in either that is known, so each sector is shown by boxes, as an arc of a
 guide is: each touches the round in its middle.
@@ -15,15 +15,15 @@ import numpy as np
 from mdlgen.model.parts.guide import Facet
 from mdlgen.model.tables import Floats, Model, RollerPart
 
-DEEP = 0.25  # thickness of a box in times the radius
+DEEP = 0.25  # thickness of a box relative to the radius
 
 
 class Side(NamedTuple):
-    """What one body brings into a contact statement: all of it, or a sector of its rim."""
+    """The part of a body in a contact statement: all of it, or a sector of its rim."""
 
     suffix: str  # of the statement's name
     sector: int  # -1: all of it
-    friction: float  # in times that of the contact
+    friction: float  # relative to that of the contact
     stiffness: float
     restitution: float  # nan: that of the contact
 

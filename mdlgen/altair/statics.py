@@ -15,7 +15,7 @@ _MOST_ITERATIONS = ("max_num_iter", "75")
 
 
 def static_method(model: Model) -> str:
-    """Of the force imbalance methods none takes contacts (documented), so MKEAM solves those."""
+    """MKEAM for a model with contacts: no force imbalance method supports them (documented)."""
     return "MKEAM" if len(model.pairs) else "FIM_D"
 
 

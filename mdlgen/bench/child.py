@@ -30,7 +30,7 @@ ALONE = 60.0
 
 @dataclass(frozen=True)
 class Job:
-    """What the child is asked to do."""
+    """A job for the child process."""
 
     case: BenchCase
     solver: str

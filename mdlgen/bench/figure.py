@@ -13,7 +13,7 @@ if TYPE_CHECKING:
     from mdlgen.bench.run import Bench
 
 MARKERS = "osD^v"
-# What the ladder's errors are drawn down to, over their tolerance.
+# Lower end of the error axis of the ladder, relative to the tolerance.
 FLOOR = 1e-6
 # Suites of many small cases against closed forms.
 CLOSED = ("impact", "friction", "flight")

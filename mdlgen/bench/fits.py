@@ -1,4 +1,4 @@
-"""What the rows say together: order of a step, wall time at equal error, growth with the boxes."""
+"""Fits over all rows: order of a step, wall time at equal error, growth with the boxes."""
 
 from __future__ import annotations
 
@@ -51,9 +51,9 @@ def slope(points: list[tuple[float, float]]) -> float:
 
 
 def fits(rows: list[BenchRow]) -> dict[str, Any]:
-    """Plain data: `order` per case and solver, `wall_at_equal_error` per line, the `least_error` of each that
-    does not come to it, `growth` per solver, that of `piles` per solver and kind, what each rule `saves` per
-    solver, and the estimates of errors that are not honest."""
+    """The fits as plain data. Per case and solver: `order`. Per line: `wall_at_equal_error`, and
+    `least_error` where that error is not reached. Per solver: `growth`, that of `piles` by kind, and what
+    each rule `saves`. And the estimates of errors that are too small."""
     return {
         "order": _orders(rows),
         "wall_at_equal_error": _equal(rows),
@@ -144,8 +144,8 @@ def _growth(rows: list[BenchRow]) -> dict[str, float]:
 
 
 def _piles(rows: list[BenchRow]) -> dict[str, dict[str, float]]:
-    """How many times as long a step of a pile takes with as many notes as the one before it in its kind has,
-    per solver and kind; `notes` is how many times as many these are. Of piles of which none sleeps, once more
+    """Ratio of the times of a step for a pile and for the smaller one before it in its kind, per solver and
+    kind; `notes` is the ratio of their numbers of notes. Piles without sleeping notes are listed again
     without the first milliseconds, in which the notes land."""
     taken: dict[str, dict[int, tuple[float, int]]] = {}
     for row in rows:

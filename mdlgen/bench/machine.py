@@ -22,7 +22,7 @@ def machine() -> dict[str, str | int]:
 
 
 def versions() -> dict[str, str]:
-    """Of the packages that decide a result or a time; those not installed are left out."""
+    """Versions of the packages that decide a result or a time; those not installed are left out."""
     found = {}
     for name in PACKAGES:
         try:

@@ -22,8 +22,8 @@ def momentum(result: Result) -> tuple[Floats, Floats]:
 
 
 def energy(result: Result) -> Floats:
-    """Kinetic plus elastic energy of all boxes [N mm], (t,); the bushings by the law that solvers share. Of
-    sheets without poisson."""
+    """Kinetic plus elastic energy of all boxes [N mm], (t,); the bushings by the law that solvers share. It
+    holds for sheets without poisson."""
     from mdlgen.mechanics.bushing import bushing
     from mdlgen.mechanics.frame import Frame
 

@@ -1,4 +1,4 @@
-"""The pages of samples/ that a suite is shown by, solvers beside each other."""
+"""The pages of samples/ that show a suite, with one column per solver."""
 
 from __future__ import annotations
 
@@ -22,11 +22,11 @@ repeats a rung. This page is written by `mdlgen bench stability --repeat 1 --pag
 
 VALIDATION = """# Validation
 
-Closed forms and published tables beside what the solvers get, as `mdlgen bench validation` last ran it. The
+Results of the solvers against closed forms and published tables, from the last `mdlgen bench validation`. The
 expected numbers share no code with the solvers: they are from the literature or from scipy. "error" is
 relative to the expected number (of places, to the length that they are parts of). "estimate" is the solver's
 own `error_estimate`, which is of positions; a static run has none, and Exudyn has none where two runs would
-take long. What is allowed, and why, stands under each table: so much a grid or a smoothing costs. A row that
+take long. The allowed error, which a grid or a smoothing causes, stands under each table. A row that
 is off by more is **wrong**, and stays in the table. This page is written by
 `mdlgen bench validation --page FILE`.
 """

@@ -32,8 +32,8 @@ def sender() -> Callable[[object], None]:
 
 
 def run(task: Job, checkout: Path | None = None) -> Outcome:
-    """The outcome of a task; a crash, a hang or an internal error is one with its reason. `checkout`: a
-    folder with another state of mdlgen, which runs it."""
+    """The outcome of a task; a crash, a hang or an internal error is an outcome with its reason. `checkout`:
+    a folder with another state of mdlgen, which runs it."""
     first = [] if checkout is None else [str(checkout.resolve())]
     limit = task.case.limit * max(1, task.repeats) + STARTING
     try:

@@ -13,7 +13,7 @@ OK, FAILED, WRONG = "ok", "failed", "wrong"
 
 @dataclass(frozen=True)
 class Outcome:
-    """What came back from the process that ran a case."""
+    """The outcome of the process that ran a case."""
 
     status: str  # of the solver: "ok" or its reason
     findings: list[Finding] = field(default_factory=list)
@@ -25,7 +25,7 @@ class Outcome:
     boxes: int | None = None
     repeats: int = 0
     estimate: float | None = None  # the solver's own, relative to max(travel, sheet length / 10)
-    estimating: float | None = None  # what the runs for it took beside the wall time, median [s]
+    estimating: float | None = None  # median time of the runs for it, in addition to the wall time [s]
     unknown: str = ""  # why its error may be of any size, where the solver says so
     iterations: int | None = None  # of Newton, a linear solve each, where the solver counts them
     cpu: float | None = None  # processor time of all passes of a run, median [s]
@@ -72,7 +72,7 @@ class BenchRow:
 
 
 def rows(case: BenchCase, solver: str, outcome: Outcome) -> list[BenchRow]:
-    """The rows of one case: one per finding, or one with the reason of a failure."""
+    """The rows of one case: one per finding, or a single row with the reason of a failure."""
     if outcome.status != OK:
         return [_row(case, solver, outcome, Finding("", math.nan), FAILED, outcome.status)]
     unknown = outcome.unknown

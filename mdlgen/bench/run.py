@@ -21,7 +21,7 @@ from mdlgen.bench.suites import SUITES, cases
 from mdlgen.errors import OutputError, SpecError
 
 Say = Callable[[str], None]
-# What the name of a solver of another state of mdlgen ends with.
+# Suffix of a solver's name for another state of mdlgen.
 BESIDE = ", beside"
 # A reference is finer than what is measured; it may take this long [s].
 REFERENCE_LIMIT = 1800.0
@@ -29,7 +29,7 @@ REFERENCE_LIMIT = 1800.0
 
 @dataclass
 class Bench:
-    """What a run of the bench found."""
+    """The results of a run of the bench."""
 
     machine: dict[str, Any]
     versions: dict[str, str]
@@ -49,7 +49,7 @@ class Bench:
         return [row for row in ours if row.status == FAILED]
 
     def json(self) -> dict[str, Any]:
-        """What bench.json holds."""
+        """The content of bench.json."""
         from mdlgen.bench.fits import fits
 
         return {

@@ -64,9 +64,9 @@ def calibrate(
 
     The logarithm of the value is sought, by Brent's method for one drop and by least squares for a curve, in
     at most 15 runs. All runs for a curve take the step that the first one was given or chose, so that they
-    differ by the value alone; what a solver damps by its steps then counts as damping of the material, so a
-    last run at half the step shows how far the step moves the value (`step_error`), and its energy how much
-    of the damping is numerical (`numerical`): a value of damping is too small by that part.
+    differ by the value alone. The numerical damping of the solver at that step counts as damping of the
+    material. So a last run at half the step shows how far the step moves the value (`step_error`). Its energy
+    shows how much of the damping is numerical (`numerical`): a value of damping is too small by that part.
     `progress(runs, most)` is called after each run.
 
     Raises SpecError for an unknown value or probe, an analysis that does not go with the measurement, and a

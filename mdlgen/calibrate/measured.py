@@ -1,4 +1,4 @@
-"""What was measured: one static drop, or a drop over time read from a CSV file."""
+"""Measurements: one static drop, or a drop over time read from a CSV file."""
 
 from __future__ import annotations
 

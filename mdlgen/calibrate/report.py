@@ -15,7 +15,7 @@ DIGITS = 6  # of a value that is written for people; more is below what a run re
 
 
 def report(found: Calibration) -> dict[str, Any]:
-    """What `calibrate --json` prints, in mm, N, g, ms, rad."""
+    """The output of `calibrate --json`, in mm, N, g, ms, rad."""
     sheet = found.model.sheets[found.probe.sheet]
     message: dict[str, Any] = {
         "fit": found.fit,

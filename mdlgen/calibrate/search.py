@@ -26,11 +26,11 @@ _NARROWEST = 0.02
 # Where the value is known, relative; a drop is measured to a percent at best.
 _PRECISION = 1e-6
 _CURVE_PRECISION = 1e-4
-# What a derivative is taken over, in the logarithm: far above the noise of a run, and near enough.
+# Step of a finite-difference derivative, in the logarithm: far above the noise of a run, and small enough.
 _NEAR = 0.02
 # A drop that changes by less than this part of itself per unit of the logarithm does not show the value.
 _DEAF = 1e-6
-# A curve missed by more than this part of its greatest drop is not met: least squares may end beside it.
+# A curve missed by more than this part of its greatest drop is not met: least squares may end off the curve.
 _MET = 0.2
 
 Count = Callable[[int, int], None]

@@ -42,7 +42,7 @@ _OF_SCENE = "parameters."  # in front of a parameter that the user named
 
 
 def of_scene(name: str) -> bool:
-    """Whether a value is a parameter of the scene, not a value of a material."""
+    """True if a value is a parameter of the scene, not a value of a material."""
     return name.startswith(_OF_SCENE)
 
 
@@ -68,7 +68,7 @@ def find(name: str, scene: Scene | None = None) -> Fit:
 
 
 def check(name: str, material: Material) -> None:
-    """Raises SpecError where a scene lacks what a value needs beside it."""
+    """Raises SpecError where a scene lacks another value that this one needs."""
     if name == "damping.loss_factor" and material.damping.at is None:
         raise SpecError(
             "a loss factor belongs to a frequency, and the scene has none: give one, as "
@@ -77,7 +77,7 @@ def check(name: str, material: Material) -> None:
 
 
 def start(name: str, scene: Scene, material: Material, sheet: SheetPart) -> float:
-    """The scene's own value, in whichever form it is given there; above zero. Of two, MD and CD, the mean."""
+    """The scene's own value, in whichever form it is given there; above zero. The mean of MD and CD."""
     damping = material.damping
     if of_scene(name):
         value = scene.amounts[name.removeprefix(_OF_SCENE)].value
@@ -96,7 +96,7 @@ def start(name: str, scene: Scene, material: Material, sheet: SheetPart) -> floa
 
 def with_value(scene: Scene, material: str, name: str, value: float) -> Scene:
     """The scene with that value of a material; the other form of the same bending, or of the damping, is
-    taken away. Of a parameter all follows."""
+    removed. All values that depend on a parameter follow it."""
     if of_scene(name):
         return scene.with_({name: f"{value!r} {find(name, scene).unit}".rstrip()})
     old = scene.materials[material]

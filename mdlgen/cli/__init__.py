@@ -1,4 +1,4 @@
-"""The command line: the only package that prints, exits or draws progress. What it does stands elsewhere."""
+"""The command line: the only package that prints, exits or draws progress. The work is in other packages."""
 
 from __future__ import annotations
 

@@ -1,7 +1,7 @@
-"""What a shell offers for an option: names that the code knows, and paths of the scene that the line names.
+"""Completions of options in a shell: names that the code knows, and paths of the scene that the line names.
 
-Bash takes `=` as the end of a word: it gives `--set`, `run.analysis`, `=`, `st`, and puts what is offered in
-the place of the last. `mend_bash` puts such words together again, and keeps what stands before the last `=`.
+Bash takes `=` as the end of a word. It passes `--set`, `run.analysis`, `=`, `st`, and replaces the last word
+by the completion. `mend_bash` joins such words again, and stores the text before the last `=`.
 """
 
 from __future__ import annotations
@@ -72,7 +72,7 @@ def sheets_only(incomplete: str) -> list[str]:
     return _of(("sheets",), incomplete)
 
 
-# What bash has taken off the word that is completed, up to its last `=`, for the rest of this process.
+# The part of the completed word that bash has removed, up to its last `=`, for the rest of this process.
 BEFORE = "_MDLGEN_COMPLETE_BEFORE"
 
 
@@ -102,14 +102,15 @@ def whole(words: list[str]) -> list[str]:
 
 
 def scene_paths(ctx: Any, incomplete: str) -> list[str]:
-    """Of `--set` and its like: the next part of a path, or behind `=` the values that a key may have."""
+    """Completions of `--set` and similar options: the next part of a path, or behind `=` the allowed
+    values."""
     before = os.environ.get(BEFORE, "")
     offered = paths(_scene(ctx.params.get("spec")), before + incomplete)
     return [text[len(before) :] for text in offered]
 
 
 def paths(scene: Any, incomplete: str) -> list[str]:
-    """What may stand in place of `incomplete`, `sheets.no` or `run.analysis=`, for a scene as it was read."""
+    """Completions of `incomplete`, `sheets.no` or `run.analysis=`, for a scene as it was read."""
     from mdlgen.spec.schema import keys, model_at
 
     path, sign, _ = incomplete.partition("=")
@@ -142,7 +143,7 @@ def _child(node: Any, word: str) -> Any:
 
 
 def _is_table(field: Any) -> bool:
-    """Whether a key holds parts by name, or a list of them."""
+    """True if a key holds parts by name, or a list of them."""
     from pydantic import BaseModel
 
     def held(annotation: Any) -> bool:

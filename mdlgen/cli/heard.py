@@ -1,4 +1,4 @@
-"""What solvers say as they work, by loggers: what is compiled, and what holds a run up."""
+"""Shows the log messages of solvers as they work: compilation, and causes of delay."""
 
 from __future__ import annotations
 

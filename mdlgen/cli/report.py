@@ -145,7 +145,7 @@ def view(
 
 
 def _names(folders: list[Path]) -> list[str]:
-    """What runs are called: their folders, by as much of the path as sets them apart."""
+    """Names of runs: their folders, with as much of the path as makes them differ."""
     if len({folder.resolve() for folder in folders}) != len(folders):
         raise SpecError("a folder is named twice; name different runs")
     short = [folder.resolve().name for folder in folders]

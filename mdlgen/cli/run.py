@@ -1,4 +1,4 @@
-"""A run, and what is left of one that was cut off."""
+"""The command `run`, which can also resume a run that was cut off."""
 
 from __future__ import annotations
 
@@ -42,7 +42,7 @@ if TYPE_CHECKING:
 # Compiled code comes back for a moment some thousand times a second: how long it waits for what another
 # thread does in Python [s]. By default that is 5 ms each time; operations on large arrays come back, too.
 INTERVAL = 1e-5
-# A run that goes on after so long [s] leaves time for other things; it may be kept, and its code change
+# A run that takes longer than this [s] leaves time for other tasks: it may be stored, and its code may change
 # meanwhile.
 LONG = 1.0
 
@@ -135,7 +135,7 @@ def run(
     if not quiet:
         for text in filter(None, (*map(str, lints(model)), notice(model))):
             say(text)
-    # a page or a picture that was left beside another result would not be of it
+    # a page or a picture of an older result in the folder would not match this one
     paged, drawn = page or (folder / PAGE).exists(), pictures or are_drawn(folder)
     if drawn:
         require("matplotlib")

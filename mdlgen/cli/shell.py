@@ -1,4 +1,4 @@
-"""What all commands share: options, how an error ends a command, progress on a terminal."""
+"""Shared code of all commands: options, how an error ends a command, progress on a terminal."""
 
 from __future__ import annotations
 
@@ -153,7 +153,7 @@ def reports_errors(command: Callable[..., None]) -> Callable[..., None]:
         except KeyboardInterrupt:
             say("mdlgen: interrupted")
             if _busy.locked():
-                # compiled code is at work beside, and an orderly end would wait for it, or fall over it
+                # compiled code runs in parallel: an orderly end would wait for it, or crash
                 sys.stdout.flush()
                 sys.stderr.flush()
                 os._exit(INTERRUPTED)
@@ -228,7 +228,7 @@ def model_of(spec: Path, sets: list[str] | None, limits: list[str] | None = None
 
 
 def source_of(text: str, sets: Iterable[str]) -> str:
-    """The text of a scene as it was written, and what was set beside it."""
+    """The text of a scene as it was written, with the values of `--set`."""
     return text + "".join(f"# --set {item}\n" for item in sets)
 
 

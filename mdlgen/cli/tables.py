@@ -1,4 +1,4 @@
-"""What a command prints as tables on a terminal."""
+"""Tables that a command prints on a terminal."""
 
 from __future__ import annotations
 

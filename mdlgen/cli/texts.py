@@ -1,4 +1,4 @@
-"""What other programs read: written, read again, compared with the Model."""
+"""Files for other programs: they are written, read back, and compared with the Model."""
 
 from __future__ import annotations
 

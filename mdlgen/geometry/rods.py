@@ -90,7 +90,7 @@ def into_triangles(roller: Rod, triangles: Floats) -> float:
 
 
 def _slab(corners: Floats, half: float) -> Floats:
-    """What of a polygon has a third coordinate within +-half, (n, 3)."""
+    """The part of a polygon with a third coordinate within +-half, (n, 3)."""
     for sign in (1.0, -1.0):
         kept: list[Floats] = []
         for k in range(len(corners)):

@@ -35,8 +35,9 @@ def arc(radius: float, begin: float, end: float) -> Floats:
 
 
 def prism(outline: Floats, low: float, high: float, caps: Ints | None = None) -> Solid:
-    """Of an outline in x and y, counterclockwise, (n, 2), from z = low to z = high. `caps` are the triangles
-    of its ends, (m, 3), if left out those from the mean of its points, from which all of it must be seen."""
+    """A prism of an outline in x and y, counterclockwise, (n, 2), from z = low to z = high. `caps` are the
+    triangles of its ends, (m, 3). If left out they start at the mean of its points, from which all of it must
+    be seen."""
     k = np.arange(len(outline))
     after = np.roll(k, -1)
     if caps is None:

@@ -9,7 +9,7 @@ import numpy as np
 from mdlgen.lints.lint import Lint
 from mdlgen.model.tables import Model
 
-THIN, THICK = 5e-9, 1e-7  # viscosities of gases, with room on either side [N ms/mm^2]
+THIN, THICK = 5e-9, 1e-7  # range of viscosities of gases, with a margin at both ends [N ms/mm^2]
 MICRO = 1e9  # uPa s for each of these
 
 

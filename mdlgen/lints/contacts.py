@@ -137,7 +137,7 @@ def idle_rolling(model: Model) -> Iterator[Lint]:
 
 
 def deep(depth: float, sheet: SheetPart) -> bool:
-    """Whether a part is deeper in a sheet than half of its thickness."""
+    """True if a part is deeper in a sheet than half of its thickness."""
     return depth > DEEP * sheet.thickness
 
 
@@ -148,5 +148,5 @@ def _boxes_under(sheet: SheetPart, roller: RollerPart) -> float:
 
 
 def _faces(plane: PlanePart, direction: Floats) -> bool:
-    """Whether what moves along a direction comes to the face of a plane."""
+    """True if a body that moves along a direction meets the face of a plane."""
     return float(plane.normal @ direction) < -1.0 + FLAT

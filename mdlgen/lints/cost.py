@@ -1,11 +1,12 @@
-"""What a run costs, before it is run, and lints of what makes it cost so much.
+"""Predicts the cost of a run before it starts, and lints of the inputs that make it expensive.
 
-Counted are boxes, pairs of bodies by what they are of, cells of air, and steps. Fitted to the samples and
-to some of them on other grids and at other tolerances, on one core of some 3 GHz, with all that the solver
-lattice runs: the coarser runs from which the error is estimated, too. Of 19 transient samples processor
-time was 0.54 to 2.0 times what is said here. On other grids and at other tolerances it was 0.2 to 5 times:
-the step is halved until the estimate is within the tolerance, and how often is not known ahead. Where two
-processors run two passes at a time, a run takes about two thirds of it.
+The cost counts boxes, pairs of bodies by kind, cells of air, and steps. It is fitted to the samples and to
+some of them on other grids and at other tolerances. It holds for one core of some 3 GHz and the solver
+lattice with all its runs, those at coarser steps for the error estimate included.
+
+The processor time of 19 transient samples was 0.54 to 2.0 times the prediction. On other grids and at other
+tolerances it was 0.2 to 5 times. The reason: the step is halved until the estimate is within the tolerance,
+and how often is not known ahead. Two processors run two passes at a time and take about two thirds of it.
 """
 
 from __future__ import annotations
@@ -33,8 +34,8 @@ AIR = 6e-6  # each cell of a film, between 1 and 15 as it is between free sheets
 STATIC_BOX, STATIC_BAND = 4e-5, 1e-7  # [s], of a static run
 # The step of blocks, or without contacts, at a tolerance of 1e-3 [ms]; it goes with the tolerance's root.
 FIRST_STEP, PARTS_AT_LEAST, HALVED = 0.2, 20, 2.0
-# Of sheets in contact it is finer than the first one, more so where a plate is pressed, on which they clap;
-# and goes with the tolerance below 1e-3.
+# Divisors of that step. FINER: sheets in contact need a smaller one. PRESSED: a spring-loaded plate, on which
+# they chatter, needs a still smaller one. BY_TOLERANCE: exponent of the step in tolerances below 1e-3.
 FINER, PRESSED, BY_TOLERANCE = 3.7, 2.7, 1.27
 LONG, MANY_TIMES = 60.0, 4.0  # [s]: below, nothing is said
 USUAL_TOLERANCE, USUAL_OUTPUTS, USUAL_DURATION, USUAL_BOXES = 1e-3, 200, 1000.0, 500
@@ -42,7 +43,7 @@ USUAL_TOLERANCE, USUAL_OUTPUTS, USUAL_DURATION, USUAL_BOXES = 1e-3, 200, 1000.0,
 
 @dataclass(frozen=True)
 class Cost:
-    """Of one run: wall time [s] and steps in time, 0 of a static run."""
+    """Cost of one run: wall time [s] and steps in time, 0 of a static run."""
 
     seconds: float
     steps: int
@@ -55,7 +56,7 @@ class Cost:
 
 @dataclass(frozen=True)
 class _Size:
-    """What a cost follows from; times in ms."""
+    """Quantities that determine the cost; times in ms."""
 
     duration: float
     outputs: float
@@ -71,7 +72,7 @@ class _Size:
     pressed: bool  # a plate
 
     def cost(self) -> Cost:
-        """Of a transient run."""
+        """Cost of a transient run."""
         steps = max(self.duration / (self.step or self._step()), self.outputs, 1.0)
         laid = min(self.laid, MOST_LAID * self.boxes)
         each = STEP + BOX * self.boxes + BAND * self.band
@@ -79,7 +80,7 @@ class _Size:
         return Cost(START + PASSES * steps * each, math.ceil(steps))
 
     def _step(self) -> float:
-        """What the search for one comes to, about."""
+        """Approximate step that the search for a step ends at [ms]."""
         strict = self.tolerance / 1e-3
         if not self.contact:
             return min(FIRST_STEP * math.sqrt(strict), self.duration / PARTS_AT_LEAST) / HALVED
@@ -88,7 +89,7 @@ class _Size:
 
 
 def cost(model: Model) -> Cost | None:
-    """What a run of lattice costs; None for a static run with contacts, of which little is known."""
+    """Cost of a run of lattice; None for a static run with contacts, which cannot be predicted well."""
     if model.run.analysis == "static":
         if len(model.pairs):
             return None

@@ -62,7 +62,7 @@ def wide(model: Model) -> Iterator[Lint]:
 
 
 def through(model: Model) -> Iterator[Lint]:
-    """Of two rollers in contact with a sheet and with each other."""
+    """Lints of two rollers in contact with a sheet and with each other."""
     table = model.contacts
     rows = {
         (table.part_a[row], table.part_b[row]): row

@@ -8,7 +8,8 @@ from collections.abc import Iterator
 from mdlgen.lints.lint import Lint
 from mdlgen.model.tables import Model, SheetPart
 
-PAPER_TIME = (0.01, 1.0)  # ms: loss factors of 0.01 to 0.1 at 10 to 100 Hz, and ten times less and more
+# Damping times of paper [ms]: loss factors of 0.01 to 0.1 at 10 to 100 Hz, and ten times less and more.
+PAPER_TIME = (0.01, 1.0)
 # (beta L)^2 of the lowest bending mode of a beam, held at one end and free (Blevins, Formulas for Natural
 # Frequency and Mode Shape, table 8-1)
 CLAMPED, FREE = 1.875104**2, 4.730041**2

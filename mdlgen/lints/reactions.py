@@ -64,14 +64,14 @@ def fights(model: Model) -> Iterator[Lint]:
 
 
 def _what(order: Order) -> tuple[tuple[str, str], tuple[str | float, float]]:
-    """Of which part an order is, and what it asks for."""
+    """The part and quantity that an order changes, and the value that it asks for."""
     if order.kind == "go":
         return ("go", ""), (order.name, 0.0)
     return (order.kind, order.name), (order.value, order.ramp)
 
 
 def _reached(model: Model, sensor: SensorPart) -> bool:
-    """Whether the box about what a sensor sees meets that in which any box of its sheets may be."""
+    """True if the bounding box of a sensor's view meets that of all places its sheets can reach."""
     corners = np.concatenate([sensor.ends, sensor.ends + sensor.way])
     low, high = corners.min(axis=0), corners.max(axis=0)
     for k in sensor.sheets:
@@ -101,7 +101,7 @@ def _states(model: Model) -> set[str]:
 
 
 def _blindly(of: Condition) -> bool:
-    """Whether a condition of sensors holds, or may hold, while none has seen a sheet."""
+    """True if a condition of sensors holds, or may hold, while none has seen a sheet."""
     if any("." not in name for name in of.expression.names):
         return True
 
@@ -115,7 +115,7 @@ def _blindly(of: Condition) -> bool:
 
 
 def _in_time(model: Model, of: Condition) -> bool:
-    """Whether a condition of time alone is true in the run; one of anything else may be."""
+    """True if a condition of time alone becomes true in the run; any other condition may."""
     amounts = {name: Amount(value, dimension) for name, value, dimension in model.reactions.amounts}
     if not set(of.expression.names) <= {CLOCK, *amounts}:
         return True

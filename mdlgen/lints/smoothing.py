@@ -37,7 +37,7 @@ def lines(message: list[dict[str, Any]]) -> list[str]:
 
 
 def notice(model: Model) -> str:
-    """What is to be said of a scene that means something else than up to version 0.1; "" where none."""
+    """The notice about a scene whose meaning has changed since version 0.1; "" where it has not."""
     changed = [item for item in smoothings(model) if item["follows"]]
     if not changed:
         return ""

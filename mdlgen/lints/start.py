@@ -38,7 +38,7 @@ def interference(model: Model) -> Iterator[Lint]:
 
 
 def _gives_way(part: MachinePart, depth: float) -> bool:
-    """Whether a part has a cover that is pressed in no deeper than in its nip."""
+    """True if a part has a cover that is pressed in no deeper than in its nip."""
     cover = part.cover if isinstance(part, RollerPart) else None
     return cover is not None and depth <= 1.01 * cover.depth
 

@@ -39,7 +39,7 @@ def taken_entry(model: Model) -> Iterator[Lint]:
 
 
 def _later(model: Model, sheet: SheetPart, before: SheetPart, after: float) -> str:
-    """What to do: how much later it could come in."""
+    """The remedy: how much later the sheet could come in."""
     speed = float(np.linalg.norm(before.velocity))
     if speed == 0.0:
         return "give the sheet a velocity, or let the next one come in elsewhere"

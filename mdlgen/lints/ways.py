@@ -95,7 +95,7 @@ def apart(model: Model) -> Iterator[Lint]:
 
 
 def _near(model: Model, row: int) -> bool:
-    """Whether two rollers are as near as in a nip, or one of them may move."""
+    """True if two rollers are as near as in a nip, or one of them may move."""
     one, two = (model.roller(table[row]) for table in (model.contacts.part_a, model.contacts.part_b))
     if any(roller.arm is not None for roller in (one, two)):
         return True
@@ -138,7 +138,7 @@ def _fast(driven: Driven) -> Driven:
 def _left_behind(model: Model, sheet: SheetPart, way: Floats) -> list[str]:
     """Parts of the machine that a sheet has contacts with and that lie behind it; none where one lies ahead.
 
-    What reaches beyond its leading edge counts as ahead, what lies beyond its trailing edge as behind.
+    A part beyond its leading edge counts as ahead, one beyond its trailing edge as behind.
     """
     table = model.contacts
     names = {table.part_b[k] for k in range(len(table)) if table.part_a[k] == sheet.name}

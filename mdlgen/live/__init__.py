@@ -1,1 +1,1 @@
-"""A local page that follows a scene's file, runs it anew as its values are turned, and writes them back."""
+"""A local page that follows a scene's file, runs it again as its values are changed, and writes them back."""

@@ -70,7 +70,7 @@ def of_pattern(text: str, pattern: str) -> Control:
 
 
 def control_of(path: SpecPath, value: Any, group: str) -> Control | None:
-    """Of a value at a path of the plain data; None where it is no number."""
+    """The control of a value at a path of the plain data; None where it is not a number."""
     amount = _amount(value)
     if amount is None:
         return None

@@ -1,4 +1,4 @@
-"""What the page draws of a run, as JSON: in whole, of the part so far, and as it begins."""
+"""The drawing data of a run for the page, as JSON: of the whole, of the part so far, and of its start."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ if TYPE_CHECKING:
 
 NAME = "current"
 SECTIONS = ("headline", "numbers", "events", "lints", "map")
-MOST_OF_PART = 80  # states of a part that is shown while the run goes on, and of a draft
+MOST_OF_PART = 80  # states of a part that is shown during the run, and of a draft
 COLOURS = (("speed", "mm/s"), ("strain", ""), ("curvature", "1/mm"), ("contact", "N"))
 
 

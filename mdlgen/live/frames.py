@@ -1,4 +1,4 @@
-"""What the server and its worker send each other: a record as JSON, and a body of bytes behind it."""
+"""Messages between the server and its worker: a record as JSON, followed by a body of bytes."""
 
 from __future__ import annotations
 
@@ -17,5 +17,5 @@ def packed(record: dict[str, Any], body: bytes = b"") -> bytes:
 
 
 def lengths(head: bytes) -> tuple[int, int]:
-    """Of the record and of the body, from the first HEAD bytes."""
+    """Lengths of the record and of the body, from the first HEAD bytes."""
     return _LENGTHS.unpack(head)

@@ -1,4 +1,4 @@
-"""What the page's server refuses before anything of it is looked at."""
+"""Requests that the page's server refuses before it reads any of their content."""
 
 from __future__ import annotations
 
@@ -13,7 +13,8 @@ Receive = Callable[[], Awaitable[MutableMapping[str, Any]]]
 Send = Callable[[MutableMapping[str, Any]], Awaitable[None]]
 App = Callable[[Scope, Receive, Send], Awaitable[None]]
 
-# Of every answer: nothing is kept by the browser, framed by another page, or loaded from elsewhere.
+# Headers of every answer: the browser caches nothing, no other page frames it, and nothing is loaded from
+# elsewhere.
 HEADERS = (
     (b"cache-control", b"no-store"),
     (b"x-content-type-options", b"nosniff"),

@@ -41,7 +41,7 @@ class Cancelled(Exception):
 
 @dataclass(frozen=True)
 class Job:
-    """What is asked of the worker; `draft`: one pass at a coarse step, without estimates; `parts`: with the
+    """A request to the worker; `draft`: one pass at a coarse step, without estimates; `parts`: with the
     animation as it grows; `first`: with the scene before its first step."""
 
     number: int
@@ -111,7 +111,7 @@ def _scene(job: Job, overrides: tuple[str, ...]) -> Scene:
 
 @lru_cache(maxsize=1)
 def _described(text: str, file: str, sets: tuple[str, ...], folder: str, limits: tuple[str, ...]) -> str:
-    """What can be turned in the scene as the file has it, as JSON."""
+    """The values that can be changed in the scene as the file has it, as JSON."""
     document = _document(text, file, limits).copy()
     scene = meant(document, sets, Path(folder), DEFAULT.raised(limits))
     return json.dumps([asdict(control) for control in controls(scene, document)], allow_nan=False)
@@ -167,8 +167,8 @@ def draft_step(model: Model) -> float:
 
 
 class _Reporter:
-    """Called by the solver as it goes on: cancels it, reports how far it is, and sends what there is to see
-    of a run that takes long."""
+    """Called by the solver during a run: cancels it, reports its progress, and sends the part so far of a
+    long run."""
 
     def __init__(self, job: Job, model: Model, send: Send, cancelled: Callable[[], bool], keep: Checkpointer):
         self.job, self.model, self.send, self.cancelled, self.keep = job, model, send, cancelled, keep
@@ -186,7 +186,7 @@ class _Reporter:
         self.send({"kind": "progress", "time": at, "end": end, "steps": steps, "touching": touching}, b"")
         if not self.job.parts:
             return
-        # a finer pass begins anew: what a coarser one has shown stays until this one is as far
+        # a finer pass starts at 0 again: the part of a coarser one stays until this one is as far
         wait = max(PART, self.cost / SHARE) if self.furthest else FIRST_PART
         if self.keep.part is None or at <= self.furthest or now - self.parted < wait:
             return

@@ -1,8 +1,8 @@
-"""What a page shows: the scene's file, the values that are turned, and the run that belongs to both.
+"""The session behind a page: the scene's file, the values that are changed, and the run that belongs to both.
 
-Each change asks for a draft, and then for the full run. The newest change wins: a full run that goes on is
-cancelled at once, a draft after a moment in which it may end, so that there is something to see while a value
-is dragged.
+Each change asks for a draft, and then for the full run. The newest change wins: a full run in progress is
+cancelled at once. A draft is cancelled after a moment in which it may end, so that there is something to see
+while a value is dragged.
 """
 
 from __future__ import annotations
@@ -25,8 +25,8 @@ from mdlgen.live.writing import still_turned, with_values
 from mdlgen.paths import write_atomic
 from mdlgen.spec.load import loads, read
 
-# How long a draft goes on where a newer value waits [s], and the one after a draft that was ended for that.
-# So there is something to see while a slider moves, of a run that takes long its parts.
+# Time that a draft still runs while a newer value waits [s], and the one after a draft that was cancelled.
+# So there is something to see while a slider moves; of a long run its parts are shown.
 PATIENCE, MORE_PATIENCE = 0.5, 1.5
 DRAWING = 0.12  # that a page has to draw a draft, before the full run takes all processors [s]
 PAUSE = 0.2  # without a newer value, after which the full run follows a draft while a slider is held [s]
@@ -112,7 +112,7 @@ class Session:
             self._waiting.discard(changed)
 
     def command(self) -> str:
-        """What runs the scene as it is shown."""
+        """The command line that runs the scene as it is shown."""
         sets = [*self.sets, *(f"{path}={text}" for path, text in self.turned.items())]
         words = ["mdlgen", "run", str(self.file), *(word for item in sets for word in ("--set", item))]
         if self.solver != "auto":
@@ -193,7 +193,7 @@ class Session:
         self._ask_anew()
 
     def _ask_anew(self) -> None:
-        """The newest of all is wanted, and what goes on is not."""
+        """Requests the newest values, and cancels the run in progress."""
         self._todo = [DRAFT, FULL]
         self._stop_timer("pause")
         if self._job is not None and not self._cancelled:

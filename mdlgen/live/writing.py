@@ -17,9 +17,9 @@ _QUOTES = ("'", '"')
 
 
 def with_values(text: str, file: str, turned: Mapping[str, str]) -> str:
-    """The text with other values, by path as of `--set`. Each is put in the place of the one before, and all
-    else stays as it is; where a value has no place of its own, as that of a part that a `repeat` makes, the
-    text is written anew with its comments. Raises SpecError."""
+    """The text with other values, by path as of `--set`. Each replaces the one before, and all else stays as
+    it is. If a value has no place of its own, as for a part that a `repeat` makes, the whole text is written
+    again with its comments. Raises SpecError."""
     document = parse(text, file)
     wanted = document.copy()
     for path, value in turned.items():

@@ -1,1 +1,1 @@
-"""What every backend reads: flat, frozen numpy tables, lowered once from a Scene."""
+"""The Model that every backend reads: flat, frozen numpy tables, lowered once from a Scene."""

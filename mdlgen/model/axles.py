@@ -1,8 +1,8 @@
 """Motors, limiters, bearings and shafts of a scene, as torques on rollers.
 
-A shaft whose speed is prescribed gives each of its rollers a drive of that speed times its ratio. Of a shaft
-with a motor, or without a drive, the first roller by name leads: its spin is the unknown of all, the others
-turn by their ratio to it, and what turns the shaft is carried over to it.
+A shaft whose speed is prescribed gives each of its rollers a drive of that speed times its ratio. On a shaft
+with a motor, or without a drive, the first roller by name leads. Its spin is the unknown of all, the others
+turn by their ratio to it, and the torques on the shaft are carried over to it.
 """
 
 from __future__ import annotations
@@ -22,7 +22,7 @@ STEPS_PER_PERIOD = 4  # whole steps of a motor in one period of its torque
 
 
 class Turning(NamedTuple):
-    """What turns a roller: its prescribed or wanted speed, the torques on it, and who leads its shaft."""
+    """Drive of a roller: its prescribed or target speed, the torques on it, and the leader of its shaft."""
 
     speed: float | None = None  # [rad/ms], of a profile the greatest in size
     ramp: float = 0.0  # [ms]
@@ -33,7 +33,7 @@ class Turning(NamedTuple):
 
 
 def turning(scene: Scene, name: str) -> Turning:
-    """Of a roller of a scene."""
+    """The drive of a roller of a scene."""
     roller = scene.rollers[name]
     for called, shaft in scene.shafts.items():
         if name in shaft.rollers:

@@ -10,7 +10,7 @@ from mdlgen.rubber.layer import Layer
 from mdlgen.spec.covered import meets, nip_of, stiffness_of
 from mdlgen.spec.scene import Scene
 
-# Loads, in times that of the nip, between which the misfit of the laws is stated.
+# Loads, relative to that of the nip, between which the misfit of the laws is stated.
 LOW, HIGH = 0.5, 2.0
 
 
@@ -72,12 +72,13 @@ def speed_ratio(cover: CoverPart, force: Floats | float) -> Floats | float:
 
 
 def levers(model: Model) -> tuple[Floats, Floats]:
-    """How far friction of each contact stands beyond the undeformed surface: l z + b z^2 at a depth z, l (n,)
-    and b [1/mm] (n,).
+    """Distance of the friction of each contact beyond the undeformed surface: l z + b z^2 at a depth z, l
+    (n,) and b [1/mm] (n,).
 
-    Of a sheet on a roller it is that from R on, so that what rolls goes at omega (R + l z + b z^2). Of two
-    rollers a and b it stands at R_a - z/2 and R_b - z/2 from their axes, and that nearer to b: their speeds
-    match there if omega_a R_a (1 + gain_a) = omega_b R_b (1 + gain_b), to the first order of gains and z/R.
+    For a sheet on a roller it is measured from R, so that the rolling surface moves at omega (R + l z + b
+    z^2). For two rollers a and b friction acts at R_a - z/2 and R_b - z/2 from their axes, shifted by that
+    distance towards b. Their speeds match there if omega_a R_a (1 + gain_a) = omega_b R_b (1 + gain_b), to
+    the first order of gains and z/R.
     """
     rollers = {roller.name: roller for roller in model.rollers}
     found = np.zeros((2, len(model.contacts)))
@@ -112,7 +113,7 @@ def _between(one: RollerPart, two: RollerPart, k: float) -> Floats:
 
 
 def covered(cover: CoverPart) -> list[str]:
-    """What is said of a cover and its nip."""
+    """The message about a cover and its nip."""
     hard = "" if cover.hardness is None else f"{cover.hardness:g} ShA, "
     facing, width = cover.other or "a flat face", 2.0 * cover.half
     force, gain = 100.0 * cover.misfit, 100.0 * cover.gain_misfit

@@ -34,8 +34,8 @@ def lower_curves(
 ) -> Curves:
     """The curves that some bushing follows, by sheet, MD before CD.
 
-    `long` [mm] is the length of each joint, `wide` [mm^2] the section of each of its bushings, in times of
-    zones as their membrane stiffness is; (bushings,), of supports any.
+    `long` [mm] is the length of each joint, `wide` [mm^2] the section of each of its bushings. In zones the
+    section is scaled by their membrane stiffness. Both are (bushings,), with any value for supports.
     """
     count = len(bushings)
     of, axis = np.full(count, -1), np.zeros(count, dtype=np.int64)

@@ -111,7 +111,7 @@ def _pressed(plate: Slab) -> bool:
 
 
 def _joined(plate: Slab, end: End, others: Sequence[Slab]) -> bool:
-    """Whether the faces of other plates continue those of an end over half of its length."""
+    """True if the faces of other plates continue those of an end over half of its length."""
     for face in plate.faces:
         down = 0.0 if face > 0.0 else 2.0 * plate.half[2]
         points = end.point - down * end.up + np.outer(end.length * _STATIONS, end.along)
@@ -124,7 +124,7 @@ def _joined(plate: Slab, end: End, others: Sequence[Slab]) -> bool:
 
 
 def _on(plate: Slab, points: Floats, normal: Floats) -> np.ndarray:
-    """Which points (n, 3) are on a touched face of a plate that looks the same way."""
+    """A mask of the points (n, 3) on a touched face of a plate that has the same normal."""
     own, way = (points - plate.center) @ plate.axes, normal @ plate.axes
     on = np.zeros(len(points), bool)
     within = np.abs(own[:, 2]) <= plate.half[1] + FLUSH

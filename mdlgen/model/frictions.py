@@ -55,7 +55,8 @@ def refuse_measured(model: Model, who: str) -> None:
 
 
 def measured(frictions: Frictions, row: int) -> str | None:
-    """What friction of a contact, a row, is more than two coefficients and their speeds; None: nothing."""
+    """The reason why a contact, a row, needs more than two coefficients and their speeds; None: it does
+    not."""
     found = (
         (frictions.direction[row].max() > 1.0, "friction by direction"),
         (frictions.face[row].max() > 1.0, "friction by face"),

@@ -50,7 +50,7 @@ def box_nodes(sheet: SheetPart) -> tuple[Floats, Floats]:
 
 
 def exposed_sides(sheet: SheetPart) -> np.ndarray:
-    """Which side faces (x_min, x_max, y_min, y_max) of each box have no neighbour, (count, 4)."""
+    """A mask of the side faces (x_min, x_max, y_min, y_max) of each box without a neighbour, (count, 4)."""
     j, i = np.divmod(np.arange(sheet.count), sheet.n_x)
     return np.stack([i == 0, i == sheet.n_x - 1, j == 0, j == sheet.n_y - 1], axis=1)
 

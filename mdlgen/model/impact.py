@@ -89,7 +89,7 @@ def _thrown(model: Model, roller: RollerPart) -> tuple[float, float, float] | No
 
 
 def _held(model: Model, sheet: SheetPart) -> bool:
-    """Whether something may keep a sheet from falling: a clamp, a roller or another sheet."""
+    """True if a clamp, a roller or another sheet may keep a sheet from falling."""
     others = {part.name for part in (*model.rollers, *model.sheets)} - {sheet.name}
     pairs = zip(model.contacts.part_a, model.contacts.part_b, strict=True)
     return sheet.clamp is not None or any(sheet.name in pair and others & set(pair) for pair in pairs)

@@ -1,4 +1,4 @@
-"""Limits of a scene that records of a solver have room for."""
+"""Limits of a scene by the capacity of a solver's records."""
 
 from mdlgen.spec.drive import MOST_CORNERS as MOST_CORNERS
 from mdlgen.spec.motor import MOST_POINTS as MOST_POINTS

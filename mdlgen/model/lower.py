@@ -56,8 +56,8 @@ from mdlgen.spec.smoothing import following, speeds
 def lower(scene: Scene) -> Model:
     """The tables that every backend reads.
 
-    Raises SpecError where names that are made from the user's meet, where there would be more pairs than the
-    scene's limits allow, and where values are so far apart that a number of the tables is not finite.
+    Raises SpecError where a generated name is equal to one of the user, and where there would be more pairs
+    than the scene's limits allow; also where values are so far apart that a table has infinite numbers.
     """
     try:
         with np.errstate(over="raise", divide="raise", invalid="raise"):
@@ -368,8 +368,8 @@ def _joints(
 
 
 def _creases(sheet: SheetPart, joints: Joints) -> tuple[Floats, Floats]:
-    """Of each joint, as it is on a crease or on none: bending stiffness relative to that of the sheet, and
-    stiffness of the crease per length."""
+    """Bending stiffness of each joint relative to that of the sheet, and stiffness of the crease per length,
+    for joints on a crease and on none."""
     creases = sheet.bend.creases if sheet.bend is not None else ()
     factors = [crease.stiffness for crease in creases]
     own = [np.inf if crease.per_length is None else crease.per_length for crease in creases]

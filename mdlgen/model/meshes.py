@@ -25,8 +25,8 @@ def mass_of(mesh: Mesh) -> float:
 
 
 def check_balance(model: Model) -> None:
-    """Raises RefusedError where a mesh has its mass off the axis of a roller that would feel it: a solver has
-    mass and inertia of what is on a roller, not what the roller's turn makes of a weight beside it."""
+    """Raises RefusedError where a mesh has its mass off the axis of a roller that would feel it. A solver
+    adds mass and inertia of the mesh to the roller, but not the torque of an eccentric weight."""
     for mesh in model.meshes:
         if mesh.on < 0:
             continue

@@ -9,14 +9,14 @@ from mdlgen.model.tables import Bodies, Floats, MovingPart, StopsPart
 from mdlgen.spec.moving import Pivot, PivotStops, Slide, SlideStops
 
 _TURN = np.radians(5.0)  # from one angle at which bounds are taken to the next, at most
-# A stop yields: how far beyond it a part may be, in times of the way between both. A convention; a run ends
-# where a part is beyond.
+# A stop yields: distance beyond it that a part may reach, relative to the distance between both stops. A
+# convention; a run ends where a part is beyond.
 BEYOND = 0.1
 EASE = 1e-6  # mm: round-off of a centre that does not move
 
 
 def lower_motion(motion: Pivot | Slide | None, mass: float) -> MovingPart | None:
-    """Of a part of that mass [g]; None: it does not move."""
+    """The moving part for a pivot or a slide of a part of that mass [g]; None: it does not move."""
     if motion is None:
         return None
     corners = np.zeros((len(motion.profile or ()), 3))
@@ -47,7 +47,7 @@ def lower_motion(motion: Pivot | Slide | None, mass: float) -> MovingPart | None
 
 
 def lower_stops(stops: PivotStops | SlideStops | None) -> StopsPart | None:
-    """Of a pivot, a slide, an arm or a press; None: there are none."""
+    """The stops of a pivot, a slide, an arm or a press; None: there are none."""
     return None if stops is None else StopsPart(stops.low, stops.high, stops.stiffness, stops.restitution)
 
 

@@ -16,7 +16,7 @@ import numpy as np
 from mdlgen.model.tables import BOX_CYLINDER, Contacts, Floats, Model, RollerPart, SheetPart
 
 PARALLEL = 0.985  # cosine of 10 degrees
-# Of a sheet's thickness: a wider gap between two rollers has room for it.
+# Greatest gap of a nip, relative to a sheet's thickness: in a wider gap the sheet passes freely.
 GAP = 2.0
 LEAST = 1e-12
 
@@ -58,10 +58,10 @@ def _groups(rollers: list[RollerPart], thickness: float) -> Iterator[list[int]]:
 
 
 def _face(one: RollerPart, other: RollerPart, thickness: float) -> bool:
-    """Whether two rollers are parallel, overlap along their axes and may have the sheet between them.
+    """True if two rollers are parallel, overlap along their axes and may have the sheet between them.
 
-    Those that stand still have it where their gap is not above GAP times its thickness; neighbours along a
-    path, a few millimetres apart, do not. One that moves may be lifted by the smaller one's radius, and has
+    Two fixed rollers have it between them if their gap is not above GAP times its thickness; neighbours along
+    a path, a few millimetres apart, do not. One that moves may be lifted by the smaller one's radius, and has
     to come that near on its slide or arm.
     """
     if abs(float(one.axis @ other.axis)) < PARALLEL:

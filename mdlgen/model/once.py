@@ -1,4 +1,4 @@
-"""What follows from a Model alone, worked out once for each."""
+"""Caches values that follow from a Model alone, computed once for each."""
 
 from __future__ import annotations
 

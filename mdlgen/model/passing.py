@@ -13,10 +13,10 @@ from mdlgen.model.tables import Floats, Ints, Model, SheetPart
 if TYPE_CHECKING:
     from mdlgen.spec.sheet import Sheet
 
-# Of what run.tolerance lets a place be off: nearer than this to being beyond a plane a sheet is there.
+# Part of run.tolerance: a sheet nearer than this to being beyond a plane is beyond it.
 NEAR = 0.01
-# Of a step: nearer than this to the end of one an event is there. A step so short, of a run of 1e6 steps, is
-# as long as the round-off of its times.
+# Part of a step: an event nearer than this to the end of a step is at that end. For a run of 1e6 steps that
+# is as short as the round-off of its times.
 SAME = 1e-9
 
 
@@ -32,12 +32,12 @@ def planes_out(sheet: Sheet) -> tuple[tuple[int, float, float], ...]:
 
 
 def passing(model: Model) -> bool:
-    """Whether a sheet of a Model may come in or leave during a run."""
+    """True if a sheet of a Model may come in or leave during a run."""
     return any(sheet.passes for sheet in model.sheets)
 
 
 def at_start(model: Model) -> list[bool]:
-    """Of each sheet whether it is there as the run begins."""
+    """For each sheet, true if it is present as the run begins."""
     return [sheet.enters == 0.0 for sheet in model.sheets]
 
 

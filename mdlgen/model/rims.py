@@ -1,9 +1,9 @@
 """Rims of rollers in sectors: Scene -> tables, and the profile that a flat face feels.
 
-A flat face whose point nearest to the axis is at the angle phi of the rim is touched by the sector of the
+Let a flat face have its point nearest to the axis at the angle phi of the rim. It touches the sector with the
 greatest R cos(delta), delta the angle from phi to the nearest point of the sector: its arc where delta is 0,
-else its edge. That is the support function h(phi) of the rim. Its pieces, which arc or edge has how much of
-the round, are all that a solver needs."""
+else its edge. That is the support function h(phi) of the rim. A solver needs only its pieces: the range of
+angles of each arc or edge."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Which contacts have a rolling resistance that acts, and the outputs that cannot say it."""
+"""Finds contacts with a rolling resistance that acts, and the outputs that cannot express it."""
 
 from __future__ import annotations
 
@@ -6,7 +6,7 @@ from mdlgen.model.tables import BOX_CYLINDER, BOX_MESH, OF_MACHINE, Model
 
 
 def rolls(model: Model, row: int) -> bool:
-    """Whether a part of a contact is a roller, or a mesh on one."""
+    """True if a part of a contact is a roller, or a mesh on one."""
     kind = int(model.contacts.kind[row])
     if kind == BOX_MESH:
         return any(m.name == model.contacts.part_b[row] and m.on >= 0 for m in model.meshes)

@@ -36,7 +36,7 @@ def vectors(rotations: Floats) -> Floats:
 def euler_parameters(rotations: Floats) -> Floats:
     """Euler parameters (..., 4), scalar first and not negative, of matrices (..., 3, 3).
 
-    Of the four ways to them the one that divides by the largest is taken (Shepperd 1978).
+    Four formulas yield them; the one that divides by the largest parameter is used (Shepperd 1978).
     """
     (a, b, c), (d, e, f), (g, h, i) = np.moveaxis(rotations, (-2, -1), (0, 1))
     squares = np.stack([1 + a + e + i, 1 + a - e - i, 1 - a + e - i, 1 - a - e + i])  # 4 q_i^2

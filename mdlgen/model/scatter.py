@@ -37,7 +37,7 @@ MOST_PARTS = 32
 
 
 def scatter_of(model: Model) -> Floats | None:
-    """What the friction of each kept pair is times that of its contact, (pairs,); None: nothing scatters."""
+    """Friction of each stored pair relative to that of its contact, (pairs,); None: nothing scatters."""
     frictions, pairs = model.contacts.frictions, model.pairs
     if frictions is None or not (frictions.scatter[:, 0] > 0.0).any():
         return None

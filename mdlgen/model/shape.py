@@ -226,8 +226,8 @@ def joint_creases(sheet: SheetPart, joints: Joints) -> Ints:
 
 
 def apart(model: Model, anchor: Anchor) -> bool:
-    """Whether a material point has a place of its own on each of its boxes: where they lie in several frames
-    of a sheet that begins bent, which meet in that point only as long as nobody moves it."""
+    """True if a material point has a separate place on each of its boxes. They lie in several frames of a
+    sheet that begins bent, which meet in that point only until a box moves."""
     sheet = model.sheets[anchor.sheet]
     if sheet.bend is None or sheet.bend.start == "flat":
         return False

@@ -1,4 +1,4 @@
-"""What solvers ask of parts that move."""
+"""Checks and values that solvers need for parts that move."""
 
 from __future__ import annotations
 
@@ -8,8 +8,8 @@ from mdlgen.errors import RefusedError
 from mdlgen.model.parts.kinds import kind_of
 from mdlgen.model.tables import Model
 
-# Of the way from the pivot to the centre of a free part, by which its rate is measured: below this part of
-# the sheet's thickness it is none.
+# Least distance from the pivot to the centre of a free part, from which its rate is measured, relative to the
+# sheet's thickness: a shorter one counts as zero.
 NEAR = 0.1
 
 

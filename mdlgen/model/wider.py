@@ -60,6 +60,6 @@ def with_margin(model: Model, margin: float) -> Model:
 
 
 def _outside(pairs: Pairs, position: Floats) -> NDArray[np.bool_]:
-    """Which bodies are out of their bounds, (bodies,)."""
+    """A mask of the bodies out of their bounds, (bodies,)."""
     there = position[: len(pairs.low)]
     return np.any((there < pairs.low) | (there > pairs.high), axis=1)

@@ -1,2 +1,2 @@
-"""What the kernels compile to, shipped: how it is made, loaded and called, and what compiles where it does
-not fit."""
+"""The shipped compiled kernels: how they are made, loaded and called, and the compiler that is used where
+they do not fit."""

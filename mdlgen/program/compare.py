@@ -75,7 +75,7 @@ RATTLING: dict[str, tuple[str, ...]] = {
     "transport_4x2": (),
     "transport_tilted": ("run.duration=20 ms",),
 }
-# What exudyn runs: it takes a second for each millisecond.
+# Scenes that exudyn runs: it takes a second for each millisecond.
 EXUDYN = {
     "cantilever": (),
     "landing": ("run.duration=10 ms", "run.step=0.1 ms"),
@@ -110,12 +110,12 @@ class Row:
 
     @property
     def same(self) -> bool:
-        """Whether both found the same."""
+        """True if both runs agree."""
         return self.alike and self.status == "ok" and self.apart <= self.allowed
 
     @property
     def slower(self) -> bool:
-        """Whether the shipped program takes longer than it may."""
+        """True if the shipped program takes longer than it may."""
         timed = self.name in TIMED and self.solver == "lattice" and self.runs >= ENOUGH
         return timed and self.ratio > SLOWER
 
@@ -212,8 +212,8 @@ def _places(one: Any, two: Any) -> list[Apart]:
 
 
 def _estimated(one: Any, two: Any) -> list[Apart]:
-    """Of each quantity that has an estimate, and of those that run.tolerance judges: each run is as far as
-    its estimate from what both are near. Differences are in the norm that estimates are of."""
+    """Differences of the quantities that have an estimate, and of those that run.tolerance judges. Each run
+    is as far from the exact value as its estimate. Differences are in the norm of the estimates."""
     quantities = importlib.import_module("mdlgen.results.quantities")
     estimates = [importlib.import_module("mdlgen.results.estimates").complete(run) for run in (one, two)]
     found: list[Apart] = []

@@ -15,12 +15,12 @@ from typing import Any, NamedTuple
 # Functions up to this size (in LLVM's own measure, whose default is 225) are opened where they are called;
 # kernels say themselves which others are to be. More is twice the time to prepare, and no faster.
 SMALL = 25
-# What names of functions begin with that are called by none but those of the same program.
+# Prefix of functions that are called only by others of the same program.
 INNER = "kernel."
 
 
 class Target(NamedTuple):
-    """What machine code is made for. All fields are words, which a process of its own is called with.
+    """A target for machine code. All fields are words, which a process of its own is called with.
 
     `form`: LIBRARY, of which a linker makes a shared library; APART or JOINED, for this process, in several
     object files of one program or in one.
@@ -41,7 +41,7 @@ SHIPPED = (
     Target(X86, "x86_64-unknown-linux-gnu", "x86-64-v3", "", LIBRARY),
     Target(ARM, "aarch64-unknown-linux-gnu", "generic", "", LIBRARY),
 )
-# What a processor of x86-64-v3 has, in Linux's words.
+# Features of an x86-64-v3 processor, in Linux's words.
 V3 = frozenset(("avx", "avx2", "bmi1", "bmi2", "cx16", "f16c", "fma", "abm", "movbe", "popcnt", "sse4_2"))
 # How much of /proc/cpuinfo is read: its first processor takes some 1500 bytes.
 FIRST = 8192
@@ -57,7 +57,7 @@ def shipped() -> str | None:
 
 
 def processor(what: str) -> str:
-    """What Linux says of the first processor under a name such as "flags"; elsewhere nothing."""
+    """The entry of /proc/cpuinfo for the first processor under a name such as "flags"; empty elsewhere."""
     try:
         with open("/proc/cpuinfo", encoding="ascii", errors="replace") as stream:
             lines = stream.read(FIRST).splitlines()

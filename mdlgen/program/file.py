@@ -26,7 +26,7 @@ class Unfit(Exception):
 
 @dataclass(frozen=True)
 class Variant:
-    """What an entry compiles to for arguments of some types."""
+    """A compiled entry for arguments of given types."""
 
     symbol: str
     arguments: tuple[Type, ...]
@@ -35,7 +35,7 @@ class Variant:
 
 @dataclass(frozen=True)
 class Head:
-    """What a program is."""
+    """The head of a program file."""
 
     digest: str  # of the kernels that it was made from, and of their statements alone (program.digests)
     statements: str
@@ -82,12 +82,12 @@ def pack(parts: Sequence[bytes]) -> tuple[bytes, str]:
 
 
 def read_head(path: Path) -> Head:
-    """What a program is. Raises Unfit."""
+    """The head of a program file. Raises Unfit."""
     return _open(path)[0]
 
 
 def read(path: Path) -> tuple[Head, list[bytes]]:
-    """What a program is, and the bitcode of its parts. Raises Unfit for a file that is damaged, or none."""
+    """The head of a program file, and the bitcode of its parts. Raises Unfit for a damaged or other file."""
     head, packed = _open(path)
     if hashlib.sha256(packed).hexdigest() != head.code:
         raise Unfit(f"{path.name} is damaged")

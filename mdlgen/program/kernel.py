@@ -29,18 +29,19 @@ if TYPE_CHECKING:
 
 LOG = logging.getLogger("mdlgen.compiling")
 
-# Compiled code counts who holds an array, by an atomic operation at each begin and end of a function: in one
-# of many arrays that is called for each pair, this was a tenth of a run. What BORROWS leaves the counting to
-# its caller, and can make no array; what it calls inherits that, but for what OWNS arrays of its own.
+# Compiled code counts the references to an array, by an atomic operation at each begin and end of a function.
+# For one of many arrays that is called for each pair this took a tenth of a run. A kernel marked BORROWS
+# leaves the counting to its caller, and cannot make an array. Kernels that it calls inherit the mark, unless
+# they are marked OWNS because they make arrays.
 BORROWS: dict[str, Any] = {"_nrt": False}
 OWNS: dict[str, Any] = {"_nrt": True}
-# What says nothing of forceinline has it from the kernel that calls it first, and where sums are rounded goes
-# with that. What is CALLED by kernels that are put into their callers is not put there itself.
+# A kernel without its own forceinline inherits it from the kernel that calls it first. It also determines
+# where sums are rounded. A kernel marked CALLED is not inlined into kernels that are inlined themselves.
 CALLED: dict[str, Any] = {"forceinline": False}
 # A sum of products may be rounded once, where the processor has an instruction for it.
 FUSED: dict[str, Any] = {"fastmath": {"contract"}}
 
-# Room of the laws that kernels of all solvers call.
+# Package of the laws that kernels of all solvers call.
 LAWS = "mdlgen.mechanics"
 
 _lock = RLock()
@@ -48,7 +49,7 @@ _parts = count(1)
 
 
 def alone() -> bool:
-    """Whether numba is to compile all kernels, whatever is shipped: MDLGEN_NUMBA is set."""
+    """True if numba is to compile all kernels, whatever is shipped: MDLGEN_NUMBA is set."""
     return os.environ.get("MDLGEN_NUMBA", "0") not in ("", "0")
 
 
@@ -152,7 +153,7 @@ def intrinsic(function: Callable[..., Any], plain: Callable[..., Any]) -> Intrin
 
 
 class Intrinsic:
-    """What kernels call that LLVM knows and Python does not, as vectors."""
+    """A function of LLVM, on vectors, that kernels call and Python does not have."""
 
     def __init__(self, function: Callable[..., Any], plain: Callable[..., Any]):
         functools.update_wrapper(self, function)
@@ -160,7 +161,7 @@ class Intrinsic:
         self._made: Any = None
 
     def __call__(self, *args: Any) -> Any:
-        """What it does in Python."""
+        """The same function in Python."""
         return self._plain(*args)
 
     @property
@@ -217,9 +218,9 @@ def _called(kernel: Kernel, name: str) -> Any:
 
 
 class _Unfailing:
-    """A dispatcher's cache: code that cannot be kept, as on a full disk, is used all the same.
+    """A dispatcher's cache that cannot fail: code that cannot be stored, as on a full disk, is still used.
 
-    numba raises OSError in the middle of a compilation, where it would end a run that needs no room at all.
+    numba raises OSError in the middle of a compilation. That would end a run that needs no disk space at all.
     """
 
     def __init__(self, cache: Any):
@@ -229,7 +230,7 @@ class _Unfailing:
         return getattr(self._cache, name)
 
     def load_overload(self, *args: Any) -> Any:
-        """What was kept, None where it cannot be read."""
+        """The cached code, None where it cannot be read."""
         try:
             return self._cache.load_overload(*args)
         except OSError as error:
@@ -298,7 +299,7 @@ def _source(function: Any) -> str:
 
 @functools.cache
 def _shapes(room: str) -> list[str]:
-    """Fields of the tuples of a room: compiled code has them by their places."""
+    """Fields of the named tuples of a package: compiled code accesses them by their positions."""
     found: list[str] = []
     for module in kernel_sources(room):
         for name, value in sorted(vars(importlib.import_module(module)).items()):
@@ -314,7 +315,7 @@ def options_of(kernel: Kernel) -> dict[str, Any]:
 
 @functools.cache
 def room_of(package: str) -> str:
-    """The room of a package: the highest one around it that has kernels itself, and not only in packages."""
+    """The package of kernels around a package: the topmost that has kernels itself, not only in packages."""
     names = package.split(".")
     around = (".".join(names[: k + 1]) for k in range(len(names)))
     return next((room for room in around if _with_kernels(_folder_of(room).glob("*.py"))), package)

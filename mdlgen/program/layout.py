@@ -61,14 +61,14 @@ def words(kind: Type) -> int:
 
 
 def writer(kind: Type, at: int) -> Write:
-    """What writes an argument of a type into a buffer, from word `at` on. It raises Misfit."""
+    """A function that writes an argument of a type into a buffer, from word `at` on. It raises Misfit."""
     if isinstance(kind, str):
         return {"f8": _number, "i8": _whole, "b1": _truth}[kind](at)
     return (_tuple if kind[0] == "tuple" else _array)(kind, at)
 
 
 def part_writers(kind: Type, at: int) -> Write | list[Write]:
-    """What writes an argument of a type; for a tuple, what writes each of its items."""
+    """A function that writes an argument of a type; for a tuple, one for each of its items."""
     return _items(kind, at) if kind[0] == "tuple" else writer(kind, at)
 
 

@@ -14,7 +14,7 @@ from pathlib import Path
 from mdlgen.program import emit
 from mdlgen.program.emit import Target
 
-# What the linker calls the machines, by the beginning of their triples.
+# The linker's names of the machines, by the beginning of their triples.
 MACHINES = {"x86_64": "elf_x86_64", "aarch64": "aarch64linux"}
 # Libraries of the system that have the functions which a program may call (build.SYSTEM).
 NEEDED = ("libm.so.6", "libc.so.6")

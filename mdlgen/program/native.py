@@ -31,7 +31,7 @@ PATIENCE = 120.0
 
 
 def bitcode_only() -> bool:
-    """Whether machine code is made here, whatever is shipped: MDLGEN_BITCODE is set."""
+    """True if machine code is made here, whatever is shipped: MDLGEN_BITCODE is set."""
     return os.environ.get("MDLGEN_BITCODE", "0") not in ("", "0")
 
 
@@ -52,8 +52,8 @@ def load(path: Path, head: Head) -> Machine:
 
 
 def _library(path: Path, digest: str) -> Callable[[str], int] | None:
-    """What gives the addresses in a shared library; None: it is missing or damaged, or the system cannot load
-    it, such as one with another C library."""
+    """A lookup of addresses in a shared library; None: it is missing or damaged, or the system cannot load
+    it. A library that needs a different C library is such a case."""
     try:
         if hashlib.sha256(path.read_bytes()).hexdigest() != digest:
             LOG.debug("%s is damaged", path)
@@ -98,9 +98,9 @@ def _made(path: Path, head: Head) -> Machine:
 
 
 def emitted(target: Target, parts: Sequence[bytes], wanted: Sequence[int] = (0,)) -> list[bytes]:
-    """The `wanted` object files of a program in parts: the first one is made by this process, each other one
-    at the same time by one of its own, where there are processors. What another process does not give is
-    made here. Raises Unfit."""
+    """The `wanted` object files of a program in parts. This process makes the first one. The others are made
+    at the same time by processes of their own, if there are processors. Files that such a process fails to
+    make are made here. Raises Unfit."""
     try:
         every, machine = emit.units(target, parts), emit.machine(target)
         units = [every[k] for k in wanted]
@@ -130,7 +130,7 @@ def _elsewhere(target: Target, part: bytes) -> Iterator[Callable[[], bytes | Non
             stdout=subprocess.PIPE,
             stderr=subprocess.DEVNULL,
         )
-    except (OSError, ValueError):  # no room for it, or Python is part of another program
+    except (OSError, ValueError):  # no memory for it, or Python is part of another program
         yield lambda: None
         return
     found: list[bytes] = []
@@ -195,7 +195,7 @@ class Machine:
         self._address, self.kind, self.digest = address, kind, digest
 
     def entry(self, name: str, variant: Variant) -> Call:
-        """What calls an entry with arguments of some types."""
+        """A function that calls an entry with arguments of some types."""
         return Call(name, variant, self._address(variant.symbol))
 
 
@@ -234,7 +234,7 @@ class Call:
         self._function = ctypes.CFUNCTYPE(ctypes.c_int32, ctypes.c_void_p)(address)
 
     def __call__(self, *args: Any) -> Any:
-        """The result. Raises Misfit for arguments of other types, MemoryError where room is wanting."""
+        """The result. Raises Misfit for arguments of other types, MemoryError where memory is short."""
         row = self._row
         last = row.last
         if len(args) != self._count:

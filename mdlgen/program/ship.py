@@ -20,7 +20,7 @@ T = TypeVar("T")
 
 
 class Program:
-    """What the kernels of some packages compile to, in a file, as far as it fits.
+    """The compiled kernels of some packages, in a file, as far as it fits.
 
     `entries` are the kernels that Python calls; none of them is called by another one.
     """
@@ -36,16 +36,16 @@ class Program:
 
     @property
     def name(self) -> str:
-        """What it is called."""
+        """Name of the program."""
         return self.path.stem
 
     @property
     def loaded(self) -> bool:
-        """Whether it is in use."""
+        """True if it is in use."""
         return self._machine is not None
 
     def head(self) -> file.Head:
-        """What the file says, if it was made from these kernels. Raises Unfit."""
+        """The head of the file, if it was made from these kernels. Raises Unfit."""
         head = file.read_head(self.path)
         if head.digest != sources_digest(self.rooms) and head.statements != statements_digest(self.rooms):
             raise Unfit(f"{self.path.name} was made from other kernels")
@@ -59,7 +59,7 @@ class Program:
             return self._why
 
     def code(self) -> str:
-        """Which machine code runs, with the beginning of its digest, for the record of a run."""
+        """The machine code that runs, with the beginning of its digest, for the record of a run."""
         if self.why_not() is not None or self._machine is None:
             return "compiled by numba"
         return f"{self._machine.kind}, {self._machine.digest[:16]}"
@@ -76,7 +76,7 @@ class Program:
             self._why = str(error)
 
     def entry(self, kernel: Kernel) -> Entry | None:
-        """What calls the program for a kernel; None where numba is to."""
+        """The compiled entry for a kernel; None where numba compiles it."""
         if self.why_not() is not None or self._head is None or self._machine is None:
             return None
         name = kernel.__name__

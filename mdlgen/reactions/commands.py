@@ -24,7 +24,7 @@ class Units(NamedTuple):
 
 
 class Commands:
-    """What a Model's drives and springs were ordered so far, by body."""
+    """The values that a Model's drives and springs were ordered to so far, by body."""
 
     def __init__(self, model: Model, units: Units):
         self._units = units
@@ -71,7 +71,7 @@ class Commands:
         return self._parts[name].body
 
     def kept(self) -> dict[str, Any]:
-        """All that it goes on from, as plain values."""
+        """All that a resumed run needs, as plain values."""
         ordered = {
             str(body): {name: np.asarray(value).tolist() for name, value in fields.items()}
             for body, fields in self._ordered.items()

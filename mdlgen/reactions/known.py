@@ -1,4 +1,4 @@
-"""What a condition may ask of sheets, probes and rollers: values of a state by name."""
+"""Values of sheets, probes and rollers that a condition may use, by name."""
 
 from __future__ import annotations
 

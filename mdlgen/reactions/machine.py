@@ -1,8 +1,10 @@
-"""A machine along a run: when its sensors have to be looked at, what they see, which rules act, and on what.
+"""A machine along a run: the times at which its sensors are read, their readings, the rules that act, and on
+which parts.
 
-A solver asks `ahead` up to which time it may step, and tells by `look` where it is then. Steps end where a
-sensor's edge, or a condition over places, is foreseen from the velocities as they are: off by a h^2 / 2 of an
-acceleration a, second order in the step h. What was not foreseen is found within the step that passed it.
+A solver asks `ahead` up to which time it may step, and reports the time it is at by `look`. A step ends where
+the edge of a sensor, or a condition on places, is predicted from the current velocities. With an acceleration
+a that is off by a h^2 / 2, second order in the step h. An event that was not predicted is found within the
+step that passed it.
 """
 
 from __future__ import annotations
@@ -23,11 +25,11 @@ from mdlgen.reactions.sensing import FAR, Eye, Passing, Poses, between
 from mdlgen.reactions.sight import Sight
 from mdlgen.units import PER_SECOND
 
-# What is that much of a step ahead is there: times are found to a part of that (convention; the time of an
-# event is wrong by less than this part of what the step does to it).
+# An event less than this part of a step ahead counts as reached: times are found to that accuracy
+# (convention; the time of an event is wrong by less than this part of what the step does to it).
 SOON = 1e-3
-# A sheet is not looked at while it would not reach a sensor at twice the speed of what is fastest, and twice
-# the acceleration of gravity (convention: what is faster yet is found within the steps that passed it).
+# A sheet is skipped while it could not reach a sensor at twice the speed of the fastest part and twice the
+# acceleration of gravity (convention: a still faster sheet is found within the steps that passed it).
 SAFE = 2.0
 HALVINGS = 24  # of a step, to a time within it: to 6e-8 of it
 # Times that rules at one time may set off each other: more go in a circle (convention).
@@ -90,12 +92,12 @@ class Machine:
 
     @property
     def ended(self) -> bool:
-        """Whether a rule ended the run."""
+        """True if a rule ended the run."""
         return self._stage.ended
 
     @property
     def there(self) -> NDArray[np.bool_] | None:
-        """Which sheets are in the machine, (sheets,); None: all."""
+        """A mask of the sheets in the machine, (sheets,); None: all."""
         return self._there
 
     @there.setter
@@ -191,7 +193,7 @@ class Machine:
     # -- what happens
 
     def look(self, t: float, step: float, poses: Poses) -> list[Order]:
-        """What is to be done at the time t [ms], where a solver is with steps of that length.
+        """The orders due at the time t [ms], for a solver with steps of that length.
 
         Raises RunawayError.
         """
@@ -290,7 +292,7 @@ class Machine:
         return self._stage.fired[rule] > 0 or any(k == rule for _, k in self._stage.pending)
 
     def _act(self, rule: int, t: float) -> list[Order]:
-        """What a rule does at the time t; states are its own matter."""
+        """The orders of a rule at the time t; changes of state are made here."""
         stage, orders = self._stage, self._rules[rule].orders
         stage.fired[rule] += 1
         for order in orders:
@@ -308,7 +310,7 @@ class Machine:
         return [order for order in orders if order.kind != "go"]
 
     def _changed(self, rules: Sequence[int], t: float, poses: Poses) -> bool:
-        """Whether one of these rules would hold, or not hold, as it does not, or does, now."""
+        """True if the condition of one of these rules differs from its stored truth."""
         stage, known = self._stage, self._known(t, poses)
         return any(
             self._conditions[k].holds(known) != stage.true[k]
@@ -317,7 +319,7 @@ class Machine:
         )
 
     def _known(self, t: float, poses: Poses) -> Callable[[str], Amount | float]:
-        """What conditions know at a time, by name."""
+        """A lookup of the values that conditions use, at a time, by name."""
 
         def value(name: str) -> Amount | float:
             if name == CLOCK:
@@ -331,10 +333,10 @@ class Machine:
 
         return value
 
-    # -- runs that are gone on with
+    # -- runs that are resumed
 
     def kept(self) -> dict[str, Any]:
-        """All that it goes on from, as plain values."""
+        """All that a resumed run needs, as plain values."""
         stage = self._stage
         before = None if self._before is None else [self._before[0], *(a.tolist() for a in self._before[1])]
         return {
@@ -357,7 +359,7 @@ class Machine:
 
 
 def in_words(order: Order, turns: bool = False) -> str:
-    """What an order asks for, as a person says it; `turns`: its place is an angle."""
+    """The text of an order for a message; `turns`: its place is an angle."""
     if order.kind == "speed":
         ramp = f" in {order.ramp:g} ms" if order.ramp else ""
         return f"{order.name} to {order.value * PER_SECOND:.6g} rad/s{ramp}"

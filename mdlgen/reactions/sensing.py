@@ -1,11 +1,11 @@
-"""What a sensor sees of sheets: how far their edges are from it, and how a sheet goes by.
+"""Readings of a sensor: how far edges of sheets are from it, and how a sheet passes it.
 
-A sensor looks from each point of a line between two ends, along its way; of a beam and a point both ends are
-one. Seen along the way, the line falls on the middle plane of a box as a straight line, and the sheet is
-there where that meets the box's rectangle. How far it is off is the greatest separation along the two sides
-of the rectangle, across the line, and along the way beyond what the sensor sees (separating axes, exact in
-sign, continuous). On sides with a neighbour a rectangle reaches half a box further, so that no line between
-two boxes is taken for an edge.
+A sensor looks from each point of a line between two ends, along its way; for a beam and a point both ends are
+equal. Seen along the way, the line projects onto the middle plane of a box as a straight line. The sheet
+covers the sensor where that line meets the box's rectangle. The distance is the greatest separation over four
+directions (separating axes, exact in sign, continuous): along the two sides of the rectangle, across the
+line, and along the way beyond the end of the view. On sides with a neighbour a rectangle reaches half a box
+further, so that no line between two boxes is taken for an edge.
 """
 
 from __future__ import annotations
@@ -53,7 +53,7 @@ class Passing(NamedTuple):
     skew: (
         float  # from where it goes, for a line from across that, to its nearest side, about its normal [rad]
     )
-    position: float  # of its middle beside the sensor, along way x direction in which it goes [mm]
+    position: float  # offset of its middle from the sensor, along way x direction in which it goes [mm]
 
 
 def between(one: Poses, two: Poses, part: float, time: float) -> Poses:

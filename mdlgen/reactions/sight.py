@@ -1,4 +1,4 @@
-"""What a sensor knows at a time."""
+"""The knowledge of a sensor at a time."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from mdlgen.formulas import Amount
 
 @dataclass
 class Sight:
-    """What a sensor knows. Times in ms, nan: not yet."""
+    """The knowledge of a sensor. Times in ms, nan: not yet."""
 
     covered: bool = False
     count: int = 0

@@ -1,3 +1,3 @@
-"""What shows a run: its page, pictures, text and exports."""
+"""Reports of a run: its page, pictures, text and exports."""
 
 PAGE = "report.html"  # of a run, in its folder

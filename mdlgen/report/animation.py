@@ -20,8 +20,8 @@ if TYPE_CHECKING:
 # Boxes times states of a page, 600 boxes at 501 states; more states than FRAMES are not seen one by one.
 MOST, FRAMES = 600 * 501, 1000
 WHOLE = 32767  # of a 16-bit number
-# Colours leave out this part of the values where the greatest is so many times the rest, and begin at the
-# least where that is this part of the greatest.
+# Part of the values that the colours leave out, where the greatest is FAR times the rest. Colours begin at
+# the least value where that is NEAR of the greatest.
 OUTLIERS, FAR, NEAR = 0.005, 1.5, 0.5
 
 
@@ -49,11 +49,11 @@ def animation(
     colours: dict[str, tuple[str, Floats]],
     names: Collection[str] = (),
 ) -> dict[str, Any]:
-    """What the page draws in space.
+    """The data that the page draws in space.
 
     `colours` are, by name, a unit and the values of boxes at the states `at`, (t, boxes). Those of `names`
-    are parts of the ramp itself, (1, boxes). A run with one state (a static one) is shown beside where it
-    began.
+    are parts of the ramp itself, (1, boxes). A run with one state (a static one) is shown together with its
+    start.
     """
     model = result.model
     moves = np.array(moving(model), dtype=np.int64)

@@ -13,8 +13,8 @@ from mdlgen.model.tables import Floats, Model, PlanePart, RollerPart
 from mdlgen.report.over_time import words
 from mdlgen.units import PER_SECOND
 
-LENGTH, LEAST = 0.1, 0.35  # of the greatest arrow, in times the scene's diagonal; of the least, in its own
-BREADTH = 0.16  # of a head, in times the greatest length
+LENGTH, LEAST = 0.1, 0.35  # of the greatest arrow, relative to the scene's diagonal; of the least, in its own
+BREADTH = 0.16  # of a head, relative to the greatest length
 AWAY = np.array([-0.55, -0.75, 0.5])  # where a scene is first looked at from
 
 
@@ -53,7 +53,7 @@ def longest(model: Model) -> float:
 
 
 def arrows(model: Model) -> list[Arrow]:
-    """All of a Model as it begins. Of each kind the lengths are as the values are, the greatest `longest`."""
+    """All arrows of a Model at its start. For each kind lengths are proportional, the greatest `longest`."""
     most = longest(model)
     found: list[Arrow] = []
     for kind in (_drives, _presses, _motions, _loads):
@@ -70,7 +70,7 @@ Raw = tuple[str, str, Floats, Floats, str, float]  # part, kind, place, unit vec
 
 
 def _drives(model: Model, most: float) -> Iterator[Raw]:
-    """Beside the end of a roller that is nearer to who looks, where its surface faces what it moves."""
+    """Arrows at the nearer end of a roller to the viewer, where its surface faces the part that it moves."""
     for number, roller in enumerate(model.rollers):
         if not roller.speed:
             continue
@@ -127,7 +127,7 @@ def _presses(model: Model, most: float) -> Iterator[Raw]:
 
 
 def _motions(model: Model, most: float) -> Iterator[Raw]:
-    """Of sheets that are on their way as the run begins."""
+    """Arrows of sheets that move as the run begins."""
     for sheet in model.sheets:
         size = float(np.linalg.norm(sheet.velocity))
         if size > 0.0:

@@ -1,4 +1,4 @@
-"""What the parts of a scene are as it begins, in words, and how deep those in contact are in each other."""
+"""The parts of a scene at its start, in words, and the depth of those in contact in each other."""
 
 from __future__ import annotations
 

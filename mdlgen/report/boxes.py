@@ -1,4 +1,4 @@
-"""What each box of the sheets does at stored states: the colours of the animation."""
+"""Values of each box of the sheets at stored states: the colours of the animation."""
 
 from __future__ import annotations
 
@@ -33,7 +33,7 @@ def count(model: Model) -> int:
 
 
 def there(result: Result, at: Ints) -> list[NDArray[np.bool_] | None]:
-    """Which boxes are there at each of some stored states, (boxes,); None: all."""
+    """A mask of the boxes present at each of some stored states, (boxes,); None: all."""
     found = passing.there(result)
     if found is None:
         return [None] * len(at)
@@ -42,7 +42,7 @@ def there(result: Result, at: Ints) -> list[NDArray[np.bool_] | None]:
 
 
 def at_start(model: Model) -> NDArray[np.bool_] | None:
-    """Which boxes are there as a run begins, (boxes,); of a scene without any then the first sheet. None:
+    """A mask of the boxes present as a run begins, (boxes,); if no sheet is, of the first sheet. None:
     all."""
     here = np.array([sheet.enters == 0.0 for sheet in model.sheets])
     here[0] |= not here.any()
@@ -50,13 +50,13 @@ def at_start(model: Model) -> NDArray[np.bool_] | None:
 
 
 def speed(result: Result, at: Ints) -> Floats:
-    """Of the box centres [mm/s], (t, boxes)."""
+    """Speed of the box centres [mm/s], (t, boxes)."""
     return np.linalg.norm(result.velocity[at, : count(result.model)], axis=2) * PER_SECOND
 
 
 def greatest(found: tuple[SheetJoints, Floats, Floats] | None, shape: tuple[int, int]) -> Floats:
-    """Of `strain.histories`: the greatest membrane strain, in tension, and the greatest curvature [1/mm] of
-    the joints of each box, (2, t, boxes)."""
+    """Greatest membrane strain, in tension, and greatest curvature [1/mm] of the joints of each box, from
+    `strain.histories`, (2, t, boxes)."""
     most = np.zeros((2, *shape))
     if found is None:
         return most

@@ -1,4 +1,4 @@
-"""What each part of a scene is as it begins, in words, and where its name may stand."""
+"""Facts about each part of a scene at its start, in words, and the place for its name."""
 
 from __future__ import annotations
 

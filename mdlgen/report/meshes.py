@@ -17,7 +17,7 @@ from mdlgen.model.tables import (
     RollerPart,
 )
 
-CHEEK = 0.4, 0.12  # breadth and thickness of an arm beside its roller, in times the roller's radius
+CHEEK = 0.4, 0.12  # breadth and thickness of an arm next to its roller, relative to the roller's radius
 
 
 @dataclass(frozen=True)
@@ -59,8 +59,8 @@ def on_arms(model: Model) -> list[RollerPart]:
 
 
 def moving(model: Model) -> list[int]:
-    """What may move: boxes, then rollers, plates that are pressed, parts that turn about a pivot or slide,
-    meshes on rollers, then arms, which are counted on from the last body."""
+    """Bodies that may move: boxes, then rollers, pressed plates, parts that turn about a pivot or slide,
+    meshes on rollers, then arms, which are numbered after the last body."""
     boxes = range(sum(sheet.count for sheet in model.sheets))
     arms = range(len(model.bodies.name), len(model.bodies.name) + len(on_arms(model)))
     fixed = model.bodies.fixed
@@ -68,7 +68,7 @@ def moving(model: Model) -> list[int]:
 
 
 def _arm(roller: RollerPart) -> Solid:
-    """A bar beside each end of its roller, from the pivot, where a pin joins them, along x to its axis."""
+    """A bar at each end of its roller, from the pivot, where a pin joins them, along x to its axis."""
     assert roller.arm is not None, "asked only of a roller on an arm"
     way = roller.center - roller.arm.pivot
     length = float(np.linalg.norm(way - roller.axis * (way @ roller.axis)))

@@ -6,7 +6,7 @@ from mdlgen.model.tables import Floats
 
 
 def words(profile: Floats) -> str:
-    """What a factor does, as a page says it; "" for none."""
+    """A factor over time, as a page describes it; "" for none."""
     if not len(profile):
         return ""
     corners = ", ".join(f"{factor:.4g} at {time:.4g} ms" for time, factor in profile.tolist())

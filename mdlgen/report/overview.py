@@ -1,4 +1,4 @@
-"""What a scene amounts to before it is run: derived quantities, counts, lints."""
+"""An overview of a scene before it is run: derived quantities, counts, lints."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ UNITS = {
 
 
 def overview(model: Model) -> dict[str, Any]:
-    """What `check --json` prints, in mm, N, g, ms, rad: `derived` are the paper's Tables 1 and 2."""
+    """The output of `check --json`, in mm, N, g, ms, rad: `derived` are the paper's Tables 1 and 2."""
     return {
         "scene": model.name,
         "analysis": model.run.analysis,
@@ -48,7 +48,7 @@ def overview(model: Model) -> dict[str, Any]:
 
 
 def covers(model: Model) -> dict[str, dict[str, Any]]:
-    """What covers of rollers come to, by roller: modulus, nip under its force, stiffness of the contacts."""
+    """Derived values of covers, by roller: modulus, nip under its force, stiffness of the contacts."""
     found: dict[str, dict[str, Any]] = {}
     for roller in model.rollers:
         cover = roller.cover
@@ -109,7 +109,7 @@ def curves(model: Model, sheet: SheetPart) -> dict[str, dict[str, Any]]:
 
 
 def unlike(model: Model, sheet: SheetPart) -> dict[str, Any]:
-    """What sets boxes apart from the mean one: their range of lengths and mass, zones, and how it is bent."""
+    """Differences of boxes from the mean one: range of lengths and mass, zones, and how it is bent."""
     boxes = slice(sheet.first, sheet.first + sheet.count)
     found: dict[str, Any] = {}
     for axis, graded, lengths in zip("xy", sheet.graded, 2 * model.bodies.half[boxes, :2].T, strict=True):

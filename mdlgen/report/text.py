@@ -39,7 +39,7 @@ def lints_end(record: dict[str, Any]) -> str:
 
 
 def overview_parts(record: dict[str, Any]) -> list[str | Rows]:
-    """What `mdlgen check` prints before the lints: lines, and tables by rows."""
+    """The output of `mdlgen check` before the lints: lines, and tables by rows."""
     lines: list[str | Rows] = [f"scene {record['scene']}, {record['analysis']}"]
     for name, sheet in record["sheets"].items():
         size = " x ".join(f"{v:.5g}" for v in sheet["outline_mm"])
@@ -123,7 +123,7 @@ def _unlike(record: dict[str, Any]) -> list[str]:
 
 
 def _plate(values: dict[str, float]) -> list[str | Rows]:
-    """What joints of layout plate have across themselves: k_y and k_tx along x, the others along y."""
+    """Stiffness of joints of layout plate across themselves: k_y and k_tx along x, the others along y."""
     twist = ("tx_twist", "ty_twist")
     rows = [
         [
@@ -185,14 +185,14 @@ def _table(rows: Sequence[Sequence[str]]) -> list[str]:
 
 
 def _searched(pairs: dict[str, Any]) -> str:
-    """What is not among those kept."""
+    """The note about pairs that are not stored but searched."""
     count = pairs.get("searched", 0)
     many = "s" * (count > 1)
     return f" and those of sheets in {count} contact{many}, found as it runs" if count else ""
 
 
 def _widened(pairs: dict[str, Any]) -> str:
-    """What is said of a margin that a run had to widen, empty where it had not."""
+    """The note about a margin that a run had to widen, empty where it had not."""
     margin, given = pairs.get("margin_mm"), pairs.get("margin_given_mm")
     if margin is None or given is None or margin <= given:
         return ""
@@ -203,7 +203,7 @@ def _widened(pairs: dict[str, Any]) -> str:
 
 
 def summary_text(record: dict[str, Any]) -> str:
-    """What `mdlgen run` prints of a summary."""
+    """The output of `mdlgen run` for a summary."""
     pairs = record["pairs"]
     steps = f"{record['steps']} steps of {record['step_ms']:.4g} ms" if record["step_ms"] else "static"
     estimating = record["estimate_s"]
@@ -309,7 +309,7 @@ def _tension(tension: dict[str, Any]) -> str:
 
 
 def _drags(record: dict[str, Any]) -> list[str]:
-    """What planes, guides and fixed meshes take from sheets by friction, where they take some."""
+    """Friction drag of planes, guides and fixed meshes on sheets, where there is some."""
     rows = [["drag on sheets", "of", "N: mean", "peak"]]
     for kind in KINDS:
         for name, part in record.get(kind.table, {}).items():
@@ -334,7 +334,7 @@ def _rollers(rollers: dict[str, Any]) -> list[str]:
 
 
 def _drives(rollers: dict[str, Any]) -> list[str]:
-    """What drives give, and the grip that is left on sheets and rollers."""
+    """Torque and power of drives, and the grip reserve of sheets and rollers."""
     rows = [["drive", "torque N mm: mean", "peak", "power W: mean", "peak", "grip left"]]
     for name, roller in rollers.items():
         if not roller.get("max_torque_n_mm"):

@@ -1,1 +1,1 @@
-"""What a run leaves, the same whichever solver ran."""
+"""The result of a run, in the same form for every solver."""

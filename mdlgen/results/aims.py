@@ -15,8 +15,8 @@ if TYPE_CHECKING:
 
 
 def aimed(result: Result, roller: RollerPart, time: Floats) -> Floats:
-    """Of a driven roller, or of the shaft of its clutch, at times [ms], (n,) [rad/ms]. At the time of a jump
-    it is the speed after that."""
+    """Target speed of a driven roller, or of the shaft of its clutch, at times [ms], (n,) [rad/ms]. At a jump
+    it is the speed after the jump."""
     law = roller.prescribed
     for order in _orders(result, roller):
         law = partial(_from_then_on, law, *order)
@@ -35,7 +35,7 @@ def corners_of(result: Result, roller: RollerPart) -> Floats:
 def _from_then_on(
     before: Callable[[Floats], Floats], begin: float, target: float, ramp: float, time: Floats
 ) -> Floats:
-    """A law of time that goes on from another one at `begin` to a target."""
+    """A speed law that follows `before` until `begin`, then ramps to a target."""
     now = float(before(np.array([begin]))[0])
     share = np.clip((time - begin) / ramp, 0.0, 1.0) if ramp > 0.0 else 1.0
     return np.where(time >= begin, now + share * (target - now), before(time))

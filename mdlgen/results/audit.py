@@ -1,7 +1,7 @@
-"""The energy audit of a run: what no force put in must not come out.
+"""The energy audit of a run: no energy may come out that no force put in.
 
-Shared by all solvers. What is missing or too much is compared with an energy that means something in the run:
-what passed through it, and not less than what a lift that `run.tolerance` lets pass takes in weight.
+All solvers share it. The imbalance is compared with an energy that matters in the run: the energy that passed
+through it, and at least the work of the weight over a lift that `run.tolerance` permits.
 """
 
 from __future__ import annotations
@@ -35,10 +35,11 @@ def scale(
     moved: float,
     of: Collection[str] | None = None,
 ) -> float:
-    """What an imbalance of the parts `of` is relative to [N mm], None: of all.
+    """Energy that an imbalance of the parts `of` is relative to [N mm]; None: of all parts.
 
-    The greatest of what was dissipated, what drives and loads moved either way, kinetic and elastic energy
-    together at any time, the work of gravity, and the work that is `unseen` over the part that may be gained.
+    It is the greatest of these: dissipated energy, work of drives and loads in either direction, kinetic plus
+    elastic energy at any time, and the work of gravity. It is at least the work that is `unseen` over the
+    part that may be gained.
     """
     return max(abs(dissipated), driven, most, abs(moved), unseen(model, of) / GAIN, LEAST)
 
@@ -59,11 +60,11 @@ def unseen(model: Model, of: Collection[str] | None = None) -> float:
 
 
 def made_by_nips(energy: Energy) -> str | None:
-    """What the law of nips made of energy, at any step; None: not more than a run may gain.
+    """A message about the energy that the law of nips created at any step; None: no more than a run may gain.
 
     The law is not the gradient of an energy where a hard and a soft roller press deep. Such a run is complete
-    and its steps are fine enough, but its error is not known. Where they make more than MOST of the scale it
-    is no result.
+    and its steps are fine enough, but its error is not known. Where the nips create more than MOST of the
+    scale, the run has no result.
     """
     if -energy.dissipated <= GAIN * energy.scale:
         return None
@@ -76,10 +77,9 @@ def made_by_nips(energy: Energy) -> str | None:
 
 
 def reason(model: Model, energy: Energy, step: float, loss: float | None = None) -> str | None:
-    """Why a run at a step [ms] is no result, None where its energies balance.
+    """Why a run at a step [ms] has no result; None where its energies balance.
 
-    What is gained may be GAIN of the scale, what is lost `loss` of it (None: any, for an integrator that
-    damps).
+    The gain may be GAIN of the scale, the loss `loss` of it (None: any, for an integrator that damps).
     """
     nips = made_by_nips(energy)
     if nips is not None and -energy.dissipated > MOST * energy.scale:

@@ -1,4 +1,4 @@
-"""Whether two runs part whose starts nearly agree: such a motion has no end that a smaller step finds."""
+"""Detects motions so sensitive to the start that no smaller step converges to one end."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from mdlgen.results.estimates import FALLS
 from mdlgen.results.quantities import Difference, differences
 from mdlgen.results.result import Chaos, Result
 
-# By how much the starts differ [mm]: small against all that a run resolves, so that what becomes of it is in
+# Difference of the starts [mm]. It is small against all that a run resolves, so that the result differs in
 # proportion to it, and large against round-off of places, 1e-14 of some 100 mm.
 START = 1e-9
 # How far off a start is at least [mm]: a hundredth of the thickness of paper, which itself varies by more.
@@ -36,7 +36,7 @@ def moved(model: Model) -> Model:
 
 
 def falls(runs: list[Result], name: str) -> bool:
-    """Whether differences fall from run to run, each at half the step of the next one: a finer step helps."""
+    """True where differences fall from run to run, each at half the step of the next one."""
     found = [_of(one, two, name) for one, two in pairwise(runs)]
     known = [difference.value * difference.scale for difference in found if difference is not None]
     return len(known) >= 2 and all(a * FALLS <= b for a, b in pairwise(known))
@@ -73,7 +73,7 @@ def _of(result: Result, other: Result, name: str) -> Difference | None:
 
 
 def in_words(found: Chaos) -> str:
-    """What a reader should know of such a run."""
+    """The message to the reader about a chaotic run."""
     grown = ""
     if found.unit == "mm":
         grown = f", {found.apart / found.start_mm:,.0f} times as far: a start that is {KNOWN_START:g} mm off "

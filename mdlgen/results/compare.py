@@ -34,7 +34,7 @@ def travel(result: Result, sheet: int = 0, at: int = -1) -> Floats:
 
 
 def scale(result: Result) -> float:
-    """What errors are relative to [mm]: the greatest travel of a sheet or a tenth of a sheet's length."""
+    """Length that errors are relative to [mm]: greatest travel of a sheet or a tenth of a sheet's length."""
     lengths = [max(sheet.size) / 10.0 for sheet in result.model.sheets]
     travels = [float(np.linalg.norm(travel(result, k))) for k in range(len(lengths))]
     return max(*lengths, *travels)

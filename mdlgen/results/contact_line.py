@@ -33,8 +33,8 @@ class ContactLine:
 
 
 def of_row(result: Result, row: int) -> tuple[Ints, ContactLine]:
-    """Of a sheet on a roller: the stored states at which they touch, and the line there; kept, since events
-    and losses both look at it."""
+    """The stored states at which a sheet touches a roller, and the contact line there. It is cached, since
+    events and losses both use it."""
     if row not in result.lines:
         at = np.flatnonzero(result.contact_force[:, row] > 0.0)
         boxes = result.model.pairs.a[result.model.pairs.contact == row]
@@ -49,7 +49,7 @@ def chosen(line: ContactLine, which: Ints) -> ContactLine:
 
 
 def contact_line(result: Result, boxes: Ints, roller: RollerPart, at: Ints) -> ContactLine:
-    """Of some boxes of a sheet, at the stored states `at`."""
+    """The contact line of some boxes of a sheet at the stored states `at`."""
     few = max(1, MOST // max(1, len(boxes)))
     parts = [_contact_line(result, boxes, roller, at[k : k + few]) for k in range(0, max(len(at), 1), few)]
     return ContactLine(*(np.concatenate([getattr(p, f.name) for p in parts]) for f in fields(ContactLine)))

@@ -1,6 +1,6 @@
-"""Sheets that friction holds on what stands, and that creep there: what the regularised law (Eq. 12) costs.
+"""Sheets that friction holds at rest and that creep there, which the regularised law (Eq. 12) causes.
 
-Friction holds a sheet at a part of the machine, or at another sheet, in a stored state in which
+Friction holds a sheet at a part of the machine, or at another sheet, in a stored state if all of this holds:
 
 - the two touch, with a force above GRAZE of the greatest one, and their friction does not stick;
 - friction is below LOADED of its limit mu N: the sheet is not about to slide. Its slip on a roller, elsewhere
@@ -11,10 +11,10 @@ Friction holds a sheet at a part of the machine, or at another sheet, in a store
   the sheet's speed, while the sheet is faster than JAM_PART of the surface;
 - the slip is so fast that over the whole run it would be more than is allowed.
 
-An event is what lasts for longer than WAIT and makes the sheet creep further than is allowed: `run.tolerance`
+An event lasts for longer than WAIT and makes the sheet creep further than is allowed. That is `run.tolerance`
 times its travel, or times a tenth of its length where that is more. Left out are sheets that come to rest
-there, which lose more than BRAKES of the impulse of friction as momentum, and those that the scene clamps or
-supports.
+there, which lose more than BRAKES of the impulse of friction as momentum. Sheets that the scene clamps or
+supports are left out too.
 
 On a roller the creep is the displacement of the sheet against the surface, the mean over the contact line: a
 turn about its middle is no part of it. Elsewhere it is the slip speed that Eq. 12 has for the stored

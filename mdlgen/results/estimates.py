@@ -23,44 +23,46 @@ from mdlgen.results.wording import percent
 if TYPE_CHECKING:
     from mdlgen.results.result import Result
 
-# Of the last difference: for two runs that judge a trajectory; for what the tolerance does not judge, forces,
-# peaks, speeds and probes, of which two runs agree by accident more often.
+# Safety factors on the difference of the last two runs. SAFETY: a trajectory, which the tolerance judges.
+# SAFETY_REST: forces, peaks, speeds and probes, for which two runs agree by accident more often.
 SAFETY, SAFETY_REST = 2.0, 4.0
 # Times that again where boxes are too long to follow a roller: they rattle in its nip, and runs at several
 # steps may share an error.
 FACETS = 4.0
-# What the difference before the last leaves of itself at an order of two.
+# Ratio of two successive differences of a method of second order: the error is at least this part of
+# `before`.
 SECOND_ORDER = 0.25
-# Ratios of the difference before to the last one: of an order of a third, below which they do not fall;
-# below which they grow.
+# Ratios of the difference before the last to the last one. Below FALLS (an order of about a third)
+# differences do not fall; below GROWS they grow.
 FALLS, GROWS = 1.25, 0.5
-# Times the greater of two differences that do not fall.
+# Factor on the greater of two differences that do not fall.
 STILL = 4.0
-# An error of more than MOST of the scale is not estimated: such differences do not say how large it is. Of
-# trajectories that tolerances judge two runs alone say less: where steps do not resolve a contact, both may
-# be wrong by more than they differ.
+# An error above MOST of the scale is not estimated: such differences do not say how large it is. For
+# trajectories that only two runs judge the limit is MOST_OF_TWO. Where steps do not resolve a contact, both
+# runs may be wrong by more than they differ.
 MOST_OF_TWO = 0.02
 # Parts of the tolerance below which nothing is estimated. Without contacts: of trajectories; of forces and
 # peaks. With contacts, whose first touch may fall into another step: of trajectories; of forces and peaks.
-# What run.tolerance judges is a trajectory, slides and arms too: a floor above 1 would fail a run by itself.
+# The tolerance judges trajectories, slides and arms too: there a floor above 1 would fail every run.
 FREE, FREE_PEAKS, TOUCHING, TOUCHING_PEAKS = 1e-6, 1e-3, 1e-2, 3.0
 # The same of trajectories where sheets that bend touch something: they flutter.
 FLUTTERING = 0.25
 # The same from two runs alone: both may miss what a nip does by more than they differ, and no third one shows
 # it. An arm that presses a sheet was off by 0.62 of the tolerance where two runs differed by 0.12 of it.
 FLUTTERING_OF_TWO = 0.75
-# Of the root mean square over all alike of a scene: one of them may agree by accident.
+# Part of the root mean square over like quantities of a scene: a single one may agree by accident.
 ALIKE = 0.5
 # How a result says that its error may be of any size.
 NOT_KNOWN = "the error is not known"
 SAME_STEPS = "the solver divided the steps of all runs to the same, so that nothing was compared"
-# Of what is estimated of a pair's greatest force: a mean over the time in contact changes with short touches.
+# Least error of a pair's means, as a part of that of its greatest force: short touches change the time in
+# contact.
 OF_GREATEST = 0.25
 
 
 @dataclass(frozen=True)
 class Estimate:
-    """Of one quantity: the error relative to `scale` [`unit`], None where there is no estimate."""
+    """Error of one quantity relative to `scale` [`unit`]; None where there is no estimate."""
 
     value: float | None
     scale: float
@@ -74,9 +76,9 @@ class Estimate:
 def between(runs: Sequence[Result], judged: bool = False) -> dict[str, Estimate]:
     """Estimates by name for the first of up to three runs, each at half the step of the next one.
 
-    All quantities, or those alone that `run.tolerance` judges. What cannot be said is None, under its name.
-    Of a run that was asked for to check another (`Result.checks`) the difference is what is reported of the
-    quantities that are judged.
+    All quantities, or only those that `run.tolerance` judges. A quantity without an estimate has the value
+    None. Where the run only checks another one (`Result.checks`), the quantities that are judged have the
+    plain difference.
     """
     result, found = runs[0], {}
     after = differences(result, runs[1], judged) if len(runs) > 1 else {}
@@ -126,7 +128,7 @@ def rule(last: float, before: float | None, safety: float, judged: bool, most: f
     elif before < FALLS * last:
         found = STILL * max(last, before)
     else:
-        # What is left of a geometric series, and a safety factor. A third run that comes much closer leaves a
+        # Remainder of a geometric series, and a safety factor. A third run that comes much closer leaves a
         # trajectory's difference as it is; a peak's may still agree by accident.
         left = last / (before / last - 1.0)
         found = max(last, SAFETY * left) if judged else max(safety * last, left)
@@ -165,8 +167,8 @@ def _alike(name: str) -> str:
 
 
 def _related(estimates: dict[str, Estimate], name: str) -> float:
-    """What other quantities leave no doubt of: a pair's means change together, with the time that it touches,
-    and follow its greatest force; a probe is carried by a sheet."""
+    """Least error of a quantity that follows from other quantities. A pair's means change together with the
+    time that it touches, and follow its greatest force; a probe is carried by a sheet."""
     if name.endswith((".mean_force", ".mean_penetration")):
         pair = name.rpartition(".")[0]
         means = [_value(estimates, f"{pair}.mean_{what}") for what in ("force", "penetration")]
@@ -203,12 +205,12 @@ def headline(estimates: Mapping[str, Estimate]) -> tuple[float | None, str | Non
 
 
 def taken(result: Result, coarser: Result) -> bool:
-    """Whether a run took so many more steps than another that the two can be compared.
+    """True if a run took so many more steps than another that the two can be compared.
 
-    A solver divides steps that do not converge. Where both runs are divided to the same steps their
-    difference says nothing. The error of the finer one is at most SAFETY times the difference of the two
-    where the steps of the coarser are at least 1 + 1 / SAFETY times as long, if errors fall with the first
-    power of the step. A run without a count of steps is taken as it is.
+    A solver divides steps that do not converge. If both runs are divided to the same steps, their difference
+    says nothing. Let errors fall with the first power of the step. Then the error of the finer run is at most
+    SAFETY times the difference if the steps of the coarser are at least 1 + 1 / SAFETY times as long. A run
+    without a count of steps is accepted.
     """
     if not result.steps or not coarser.steps:
         return True
@@ -216,14 +218,14 @@ def taken(result: Result, coarser: Result) -> bool:
 
 
 def open_yet(result: Result) -> bool:
-    """Whether two runs leave open that `run.tolerance` is met, which a third one may show."""
+    """True if two runs cannot show that `run.tolerance` is met, but a third run may."""
     worst, tolerance = result.error_estimate, result.model.run.tolerance
     return len(result.coarser) == 1 and worst is not None and worst > tolerance >= worst / SAFETY
 
 
 def unlike(result: Result, coarser: Result) -> str | None:
-    """What `run.tolerance` judges that another run has so differently that the two alone do not say how large
-    the error is, and by how much; None: nothing."""
+    """Name of a quantity that `run.tolerance` judges and in which the two runs differ too much to estimate
+    the error, with the difference; None: there is no such quantity."""
     known = between([result, coarser], judged=True)
     for name, found in differences(result, coarser, judged=True).items():
         if known[name].judged is not None and known[name].value is None:
@@ -256,8 +258,8 @@ def estimated(result: Result, coarser: Sequence[Result]) -> Result:
 
 
 def by_finer(result: Result, finer: Result) -> Result:
-    """The same result with its headline, from a run at finer steps: their difference is the error of the
-    result, but for what is left in the finer one. Where that took as many steps nothing is known."""
+    """The same result with an error estimated from a run at finer steps. The difference of the two is that
+    error, apart from the error of the finer run. If that run took as many steps, nothing is known."""
     if not taken(finer, result):
         return replace(estimated(result, []), error_unknown=f"{NOT_KNOWN}: {SAME_STEPS}")
     known = between([result, finer], judged=True)
@@ -275,7 +277,7 @@ def by_finer(result: Result, finer: Result) -> Result:
 
 
 def within(result: Result) -> bool:
-    """Whether the error of a complete run by its step is known to be within `run.tolerance`."""
+    """True if the error of a complete run by its step is known to be within `run.tolerance`."""
     known = result.error_estimate
     return known is not None and known <= result.model.run.tolerance and not result.error_unknown
 
@@ -314,8 +316,8 @@ def accuracy(result: Result) -> str:
 
 
 def complete(result: Result) -> dict[str, Estimate]:
-    """All estimates of a result by name: those that it was loaded with, or from the coarser runs that it came
-    with, which are then let go. Without any, each is None."""
+    """All estimates of a result by name: those that were loaded with it, or those from its coarser runs,
+    which are then released. Without either, each is None."""
     if not result.estimates and len(result.time) > 1:
         result.estimates = between([result, *result.coarser])
         result.coarser = ()

@@ -1,8 +1,8 @@
-"""What happens to sheets: at rollers entering and leaving, slip, gaps, waits, jams, double feeds; at the ends
-of plates stubs; where friction holds them creep. And what happens to motors and torque limiters.
+"""Events of sheets, motors and torque limiters. Sheets enter and leave rollers, slip, wait, jam, leave gaps
+and feed double. They are stopped by ends of plates, and creep where friction holds them.
 
-All of it is read from the stored states, so times are those of stored states (`run.print_step`); but what
-sensors saw and rules did, which is noted as it happens.
+All events are read from the stored states, so times are those of stored states (`run.print_step`). Exceptions
+are sensors and rules, whose events the solver notes as they happen.
 """
 
 from __future__ import annotations
@@ -174,7 +174,7 @@ def _stay_events(result: Result, stay: Stay) -> list[dict[str, Any]]:
 
 
 def _faces(roller: RollerPart, other: RollerPart) -> bool:
-    """Whether two rollers are parallel, over each other, and clear each other by less than a radius."""
+    """True if two rollers are parallel, over each other, and clear each other by less than a radius."""
     away = other.center - roller.center
     along = abs(float(away @ roller.axis))
     across = float(np.linalg.norm(away - roller.axis * (away @ roller.axis)))

@@ -19,9 +19,9 @@ JAM_PART = 0.1
 # It is jammed where that lasts for so long at the end of a run, or for so long at any time; less is a wait,
 # above the last of these [ms]. A sensor of a machine that counts a late sheet as a jam allows some 50 ms.
 JAM_END, JAM_LONG, WAIT = 10.0, 50.0, 5.0
-# A sheet is on its way that is faster than CREEPS, as a part of the surface, and in the second half of such a
-# time GAINS times as fast as in the first one (3 where it speeds up evenly from rest), or gains CREEPS in
-# JAM_END: at that rate it reaches JAM_PART within ten times JAM_END.
+# A sheet is on its way if it is faster than CREEPS, as a part of the surface's speed, and speeds up. Either
+# it is GAINS times as fast in the second half of such a time as in the first one (3 where it speeds up evenly
+# from rest). Or it gains CREEPS in JAM_END: at that rate it reaches JAM_PART within ten times JAM_END.
 GAINS, CREEPS = 1.5, 0.01
 
 
@@ -38,8 +38,8 @@ class Hold(NamedTuple):
 def holds(result: Result, stay: Stay, together: np.ndarray | None) -> list[Hold]:
     """Where a driven part slips on a sheet that is held, in one stay; `together`: see results.stacked.
 
-    None of a sheet that the scene clamps or supports. A sheet under another one that goes on is held back,
-    and one that touches a rim that has not turned once yet may wait for another sector of it: they wait.
+    None of a sheet that the scene clamps or supports. A sheet under a moving one is held back, and one that
+    touches a rim in its first turn may wait for another sector of it: both wait.
     """
     roller, line, time = stay.roller, stay.line, result.time
     if not roller.speed or is_fixed(result, stay.sheet):
@@ -68,13 +68,13 @@ def holds(result: Result, stay: Stay, together: np.ndarray | None) -> list[Hold]
 
 
 def is_fixed(result: Result, sheet: int) -> bool:
-    """Whether the scene itself holds a sheet."""
+    """True if the scene itself holds a sheet."""
     model, part = result.model, result.model.sheets[sheet]
     return part.clamp is not None or any(anchor.sheet == sheet for anchor in model.supports)
 
 
 def _gains(time: Floats, speed: Floats) -> bool:
-    """Whether the speed of a sheet, as a part of the surface's, grows: by the medians of both halves."""
+    """True if the speed of a sheet, as a part of the surface's, grows, by the medians of both halves."""
     half = len(speed) // 2
     if half == 0:
         return False
@@ -84,7 +84,7 @@ def _gains(time: Floats, speed: Floats) -> bool:
 
 
 def _below_another(result: Result, stay: Stay, at: np.ndarray, together: np.ndarray | None) -> bool:
-    """Whether, for more than half of some states, the sheet lies on another one that goes on."""
+    """True if in more than half of some states the sheet lies on another one that moves on."""
     if together is None:
         return False
     limit = np.full(len(result.time), np.inf)
@@ -98,7 +98,7 @@ def _below_another(result: Result, stay: Stay, at: np.ndarray, together: np.ndar
 
 
 def _rim_to_come(result: Result, stay: Stay, at: np.ndarray) -> bool:
-    """Whether the sheet touches a driven roller with a rim that turns less than once in some states."""
+    """True if the sheet touches a driven roller with a rim that turns less than once in some states."""
     time = result.time[at]
     for row, name in partners(result, stay.sheet):
         roller = next((r for r in result.model.rollers if r.name == name), None)
@@ -112,7 +112,7 @@ def _rim_to_come(result: Result, stay: Stay, at: np.ndarray) -> bool:
 
 
 def _held_by(result: Result, stay: Stay, at: np.ndarray) -> tuple[str, ...]:
-    """What the sheet touches in most of some states but what drives it the same way."""
+    """Parts that the sheet touches in most of some states, except those that drive it the same way."""
     ahead = stay.line.roller[np.isin(stay.at, at)].mean(axis=0)
     found: dict[str, float] = {}
     for row, name in partners(result, stay.sheet):

@@ -1,11 +1,14 @@
-"""What drives bring in and contacts take by friction and rolling, part by part, from the stored states.
+"""Energy that drives bring in and contacts take by friction and rolling, part by part, from the stored
+states.
 
-A contact's friction and torques are those that the solvers store; times the slip of the surfaces they are its
-loss. Where a sheet lies on a roller the slip is that of its contact line, of a plane or guide the velocity
-of the boxes that touch it, by their depths to the power 1.5, against it. Two parts of the machine take from
-each other what is not given on: - (M_a w_a + M_b w_b). What has no such account, contacts of sheets with each
-other and of meshes, damping of normal forces, of joints and of presses, is what is left of all that the run
-dissipated. Integrals are trapezoids over the stored states, so that a loss between two of them is not seen.
+The loss of a contact is its friction and torques, as the solvers store them, times the slip of the surfaces.
+Where a sheet lies on a roller the slip is that of its contact line. On a plane or guide it is the velocity of
+the boxes that touch it, weighted by their depths to the power 1.5. Two parts of the machine dissipate what
+one does not pass on to the other: - (M_a w_a + M_b w_b).
+
+Contacts of sheets with each other and of meshes, and damping of normal forces, joints and presses, have no
+such account. Together they are the rest of all that the run dissipated. Integrals are trapezoids over the
+stored states, so that a loss between two of them is missed.
 """
 
 from __future__ import annotations
@@ -57,8 +60,8 @@ class Losses:
     rows: dict[int, Floats]
 
     def of(self, result: Result, part: MachinePart) -> Floats | None:
-        """Of a part of the machine: all at its contacts with sheets, and half of what is between it and
-        another part; None where none of its contacts has an account."""
+        """Power lost by a part of the machine: all at its contacts with sheets, and half of that between it
+        and another part; None where none of its contacts has an account."""
         contacts, sheets = result.model.contacts, {sheet.name for sheet in result.model.sheets}
         found = []
         for row, power in self.rows.items():
@@ -102,7 +105,7 @@ def summed(result: Result, power: Floats) -> Floats:
 
 
 def kinetic(result: Result, bodies: slice, at: int) -> float:
-    """Of some bodies at a stored state [N mm]."""
+    """Kinetic energy of some bodies at a stored state [N mm]."""
     table = result.model.bodies
     speed, spin = result.velocity[at, bodies], result.spin[at, bodies]
     own = np.einsum("nij,ni->nj", turns(result.rotation[at, bodies]), spin)
@@ -111,7 +114,8 @@ def kinetic(result: Result, bodies: slice, at: int) -> float:
 
 
 def _on_roller(result: Result, row: int) -> Floats:
-    """Of a sheet on a roller: friction against its slip, and the couple of rolling against the roller."""
+    """Power lost by a sheet on a roller: friction against its slip, and the rolling couple against the
+    roller."""
     assert result.contact_friction is not None and result.contact_torque is not None
     roller = result.model.roller(result.model.contacts.part_b[row])
     at, line = of_row(result, row)
@@ -133,7 +137,8 @@ def _on_roller(result: Result, row: int) -> Floats:
 
 
 def _on_plate(result: Result, row: int, at: Any) -> Floats:
-    """Of a sheet on a plane or guide: friction by its size times the speed of what touches along it."""
+    """Power lost by a sheet on a plane or guide: size of the friction times the speed of the touching
+    boxes."""
     assert result.contact_friction is not None
     model, mine = result.model, result.model.pairs.contact == row
     boxes = model.pairs.a[mine]

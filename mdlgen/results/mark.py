@@ -1,4 +1,4 @@
-"""What stands first wherever a run is shown that is not within its tolerance, or that ended early."""
+"""The warning that stands first wherever a run is shown that is not within its tolerance or ended early."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ def mark(result: Result) -> str | None:
 
 
 def chaotic(result: Result, spec: str) -> str | None:
-    """What a reader should know of a chaotic run, with the command of a sweep; None of others."""
+    """The message about a chaotic run, with the command of a sweep; None for others."""
     found = result.chaotic
     if found is None:
         return None

@@ -1,4 +1,4 @@
-"""What motors and torque limiters turn rollers with, as mechanics.axle has it, and what they report.
+"""Torques of motors and torque limiters on rollers, by the law in mechanics.axle, and the events they report.
 
 Torques are those on the roller that the motor is at, or on the one that leads its shaft, behind the gear.
 """
@@ -18,8 +18,8 @@ from mdlgen.results.stays import intervals
 if TYPE_CHECKING:
     from mdlgen.results.result import Result
 
-# A motor stalls while its roller is slower than this part of the speed that it aims at and its torque is
-# above this part of the most that it can give there, for longer than STALLS [ms]. One that starts is not
+# A motor stalls if, for longer than STALLS [ms], two things hold. Its roller is slower than SLOW of the speed
+# that it aims at, and its torque is above HARD of the most that it can give there. A motor that starts is not
 # stalled: in the second half of such a time it is GAINS times as fast as in the first one (3 where it speeds
 # up evenly from rest).
 SLOW, HARD, STALLS, GAINS = 0.02, 0.9, 5.0, 1.5
@@ -47,8 +47,8 @@ def behind(result: Result, roller: RollerPart) -> Floats | None:
 
 
 def axle_torque(result: Result, roller: RollerPart) -> Floats | None:
-    """What its motor or its limiter turns a roller with [N mm], (t,); None where a result does not have the
-    angle that it follows from."""
+    """Torque of a motor or a limiter on its roller [N mm], (t,); None where a result does not have the angle
+    that it follows from."""
     axle = roller.axle
     assert axle is not None, "asked only of a roller with an axle"
     turns, aims = spin(result, roller), shaft(result, roller)
@@ -104,7 +104,7 @@ def stalls(result: Result, roller: RollerPart) -> list[tuple[int, int]]:
 
 
 def _gains(fast: Floats, first: int, last: int) -> bool:
-    """Whether a roller speeds up between two stored states."""
+    """True if a roller speeds up between two stored states."""
     middle = (first + last) // 2
     before, after = fast[first : middle + 1].mean(), fast[middle : last + 1].mean()
     return bool(after > 0.0 and after > GAINS * before)
@@ -132,8 +132,8 @@ def slips(result: Result, roller: RollerPart) -> list[tuple[int, int]]:
 
 
 def motor_record(result: Result, roller: RollerPart) -> dict[str, Any]:
-    """What the summary has of a motor or a limiter besides torque and power: whether a motor stalls at the
-    end, for how long in all; steps that a stepper has lost; for how long a limiter slips."""
+    """Values of the summary for a motor or a limiter apart from torque and power. Motor: is it stalled at the
+    end, and stalled time in all; stepper: steps lost; limiter: time of slip."""
     time = result.time
     if len(time) < 2:
         return {}

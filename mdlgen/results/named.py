@@ -1,4 +1,4 @@
-"""What became of each part of a scene, by its name, in the units of summary.json: mm, mm/s, deg, N, rad/s."""
+"""Results of each part of a scene, by its name, in the units of summary.json: mm, mm/s, deg, N, rad/s."""
 
 from __future__ import annotations
 
@@ -59,7 +59,7 @@ class SheetResult(_Named):
         "tension": "N",
     }
     shown: ClassVar[tuple[str, ...]] = ("travel", "speed", "yaw")
-    travel: Floats  # [mm], of the centre of mass since the start, (3,)
+    travel: Floats  # displacement of the centre of mass since the start [mm], (3,)
     speed: Floats  # [mm/s], velocity of the centre of mass at the end, (3,)
     yaw: float  # [deg], at the end
     time: Floats  # of what follows [ms], (t,)
@@ -90,7 +90,7 @@ class RollerResult(_Named):
         "traction": "1",
     }
     shown: ClassVar[tuple[str, ...]] = ("speed", "center", "nip_force", "torque", "power")
-    speed: float  # [rad/s], about its axis
+    speed: float  # about its axis [rad/s]
     center: Floats  # [mm], (3,)
     nip_force: float  # [N], sum of the normal forces on it
     torque: float  # [N mm], that its drive gives about its axis, 0 of a free one

@@ -73,7 +73,8 @@ def series(result: Result, path: str) -> Floats:
 
 
 def _turning(result: Result, roller: RollerPart, what: str) -> Floats | None:
-    """What turns a roller over the stored times, (t,); of a grip that does not act, all is left."""
+    """Torque, power or grip reserve of a roller over the stored times, (t,); a grip that does not act has
+    the full reserve."""
     for name, unit, found in (
         ("torque", "n_mm", drive_torque),
         ("power", "w", drive_power),

@@ -14,7 +14,7 @@ CAME, LEFT = 0, 1  # columns of Result.stays
 
 
 def there(result: Result) -> NDArray[np.bool_] | None:
-    """Which sheets are there at the stored times, (t, sheets); None: all at all times.
+    """A mask of the sheets that are present at the stored times, (t, sheets); None: all at all times.
 
     A state at the time at which a sheet comes in or leaves is that without it, but for the first of a run.
     """
@@ -32,13 +32,13 @@ def span(result: Result, sheet: int) -> tuple[int, int]:
 
 
 def came(result: Result, sheet: int) -> bool:
-    """Whether a sheet was there at any time."""
+    """True if a sheet was present at any time."""
     return result.stays is None or not bool(np.isnan(result.stays[sheet, CAME]))
 
 
 def at_ends(result: Result, sheet: int) -> dict[str, float | None]:
-    """Of a summary: when a sheet came in and left [ms], None: it did not; nothing where all are there
-    throughout."""
+    """Entries of a summary: when a sheet came in and left [ms], None: it did not; nothing where all sheets
+    are present throughout."""
     if result.stays is None:
         return {}
     when = [None if np.isnan(value) else float(value) for value in result.stays[sheet]]

@@ -1,4 +1,4 @@
-"""What the error of a run is estimated of: each quantity with its name, norm, unit and scale.
+"""The quantities for which the error of a run is estimated: each with its name, norm, unit and scale.
 
 A name is the quantity's place in summary.json without its unit: `sheets.note.position`,
 `rollers.counter.slide`, `contacts.note.motor.max_force`. A difference of two runs is relative to the
@@ -41,10 +41,10 @@ from mdlgen.results.strain import apart, sheet_joints
 SAME_TIME = 1e-9
 # Parts of a length, radius, thickness or turn below which a motion is not what errors are relative to.
 TENTH = 0.1
-# Of the greatest force or penetration, below which one is not what errors of it are relative to.
+# Part of the greatest force or penetration; below it a force or depth is not used as a scale.
 GRAZE = 0.01
 LEAST_STRAIN, LEAST_BEND = 1e-6, 1e-3
-# Of force over depth.
+# Exponent of force over depth.
 EXPONENT = 1.5
 LEAST = 1e-300
 
@@ -62,7 +62,7 @@ class Difference:
 
     @property
     def kind(self) -> str:
-        """What it is of: `strain`, `curvature`, `twist`, `contacts.max_force`, `rollers.slide`, ..."""
+        """The kind of quantity: `strain`, `curvature`, `twist`, `contacts.max_force`, `rollers.slide`, ..."""
         head, *_, one, two = self.name.split(".")
         return one if one in ("strain", "curvature", "twist", "residual") else f"{head}.{two}"
 
@@ -91,7 +91,7 @@ class Pair:
 
     @cached_property
     def apart(self) -> Floats:
-        """Positions of all bodies in the one less those in the other [mm], (t, bodies, 3)."""
+        """Positions of all bodies in the first run minus those in the second one [mm], (t, bodies, 3)."""
         return self.result.position[self.here] - self.other.position[self.there]
 
 
@@ -129,7 +129,7 @@ def _rms(values: Floats) -> float:
 
 
 def reference(result: Result) -> float:
-    """What positions are relative to [mm]: the greatest travel of a sheet, or tenth of a length."""
+    """Length that positions are relative to [mm]: greatest travel of a sheet, or a tenth of its length."""
     return max(found.scale for found in _sheets(Pair(result, result)) if found.kind == "sheets.position")
 
 
@@ -250,11 +250,11 @@ def _probes(pair: Pair) -> Iterator[Difference]:
 
 
 def _contacts(pair: Pair) -> Iterator[Difference]:
-    """Of contacts that touched in one of the two.
+    """Differences of contacts that touched in one of the two runs.
 
-    The difference of two numbers may vanish by accident where it changes its sign with the step; so that of a
-    mean is at least the mean of the differences, that of a peak at least the one at any stored time, and
-    those of depths at least what forces of the law F ~ depth^1.5 leave of it.
+    The difference of two numbers may vanish by accident where it changes its sign with the step. So the
+    difference of a mean is at least the mean of the differences, and that of a peak at least the one at any
+    stored time. That of a depth is at least the difference that follows from forces by F ~ depth^1.5.
     """
     result, other = pair.result, pair.other
     contacts, statistics = result.model.contacts, result.statistics
@@ -281,7 +281,7 @@ def _contacts(pair: Pair) -> Iterator[Difference]:
 
 
 def _peaks(pair: Pair) -> Iterator[Difference]:
-    """Of what the joints of sheets bore: the greatest difference of any joint at any stored time."""
+    """Differences in the load of the joints of sheets: the greatest of any joint at any stored time."""
     model = pair.result.model
     one, two = pair.result.strains, pair.other.strains
     found = apart(pair.result, pair.other, pair.here, pair.there)
@@ -308,7 +308,7 @@ def _peaks(pair: Pair) -> Iterator[Difference]:
 
 
 def _residual(pair: Pair) -> Iterator[Difference]:
-    """Of what sheets keep that have yielded: the greatest difference of any joint at any stored time."""
+    """Differences in the residual curvature of sheets: the greatest of any joint at any stored time."""
     one, two = left(pair.result), left(pair.other)
     if one is None or two is None:
         return

@@ -1,4 +1,4 @@
-"""Whether what a scene requires can be judged, before it is run."""
+"""Checks, before a scene is run, that its requirements can be judged."""
 
 from __future__ import annotations
 

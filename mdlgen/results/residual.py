@@ -39,11 +39,11 @@ def _rows(model: Model, joints: SheetJoints) -> tuple[np.ndarray, np.ndarray]:
 
 
 def of_sheet(result: Result, index: int) -> dict[str, Any] | None:
-    """What a sheet keeps at the end of a run: the greatest curvature of a joint and the strain of its faces
-    there, the sharpest fold, and the curl. None where it does not yield.
+    """Residual deformation of a sheet at the end of a run. It holds the greatest curvature of a joint with
+    the strain of its faces there, the sharpest fold, and the curl. None where it does not yield.
 
-    A fold is the mean rotation that the joints of one line across the sheet keep; its curl the mean
-    curvature, the sum of all such lines over the length of the sheet.
+    A fold is the mean residual rotation of the joints of one line across the sheet. The curl is the mean
+    curvature, the sum over all such lines divided by the length of the sheet.
     """
     curvature, model = left(result), result.model
     joints, sheet = sheet_joints(model), model.sheets[index]

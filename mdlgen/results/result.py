@@ -60,8 +60,8 @@ class Energy:
     driven: float = 0.0
     balance_error: float = 0.0
     scale: float = 0.0
-    # what the damping took that a solver adds to joints, beside `dissipated`; None: the solver does not have
-    # it apart, and it is a part of balance_error
+    # energy that the solver's own damping of joints took, not counted in `dissipated`; None: the solver does
+    # not report it, and it is a part of balance_error
     numerical: float | None = None
     # parts that may ever touch each other have a balance of their own: those of the worst one, none: all
     of: tuple[str, ...] = ()
@@ -132,13 +132,13 @@ class Result:
     error_estimate: float | None = None
     error_estimate_of: str | None = None
     error_below: bool = False  # the estimate is a least value: the error is below it
-    error_unknown: str = ""  # why the error may be of any size; empty: nothing says so
+    error_unknown: str = ""  # reason for which the error may be of any size; empty: there is no such reason
     search_ended: str = ""  # why no finer step was tried, where the estimate is above the tolerance
     chaotic: Chaos | None = None  # where two runs part whose starts nearly agree
     # by how much the value of each requirement may be wrong, in its unit, inf where that is not known; of an
     # event the number of times by which a run at another step differs
     doubts: dict[str, float] = field(default_factory=dict)
-    checks: bool = False  # whether it was asked for to check a run at twice its step
+    checks: bool = False  # true where the run only checks another one at twice its step
     estimates: dict[str, Estimate] = field(default_factory=dict)  # see `results.estimates.complete`
     coarser: tuple[Result, ...] = field(default=(), repr=False)  # runs from which these follow, then none
     # what sensors saw and rules did, in the order of time, as events have it
@@ -165,18 +165,18 @@ class Result:
 
     @property
     def ok(self) -> bool:
-        """Whether the run is complete and its error is within the tolerance."""
+        """True if the run is complete and its error is within the tolerance."""
         return self.status == OK
 
     @property
     def usable(self) -> bool:
-        """Whether the run is complete: there is a result to show and to compare, whose error may be above the
+        """True if the run is complete: there is a result to show and to compare, whose error may be above the
         tolerance or unknown."""
         return self.status in (OK, INACCURATE)
 
     @property
     def partial(self) -> bool:
-        """Whether it is a part of a run that was interrupted, kept because that was asked for."""
+        """True if it is a part of an interrupted run that was stored on request."""
         return self.status.startswith(PARTIAL)
 
     def part(self, reason: str) -> Result:
@@ -201,15 +201,15 @@ class Result:
         return load(folder)
 
     def summary(self) -> dict[str, Any]:
-        """What summary.json holds."""
+        """The content of summary.json."""
         from mdlgen.results.summary import summary
 
         return summary(self)
 
     @property
     def verdict(self) -> list[Outcome]:
-        """What became of each requirement of the scene: `passed`, `value`, `margin`, `unit`; `str` of one is
-        the line that `mdlgen run` prints."""
+        """Outcomes of the requirements of the scene: `passed`, `value`, `margin`, `unit`; `str` of one is the
+        line that `mdlgen run` prints."""
         from mdlgen.results.summary import summary
         from mdlgen.results.verdict import outcomes_of
 
@@ -241,14 +241,14 @@ class Result:
 
     @property
     def sheets(self) -> Mapping[str, SheetResult]:
-        """What became of each sheet, by name."""
+        """Results of the sheets, by name."""
         from mdlgen.results.named import sheets
 
         return sheets(self)
 
     @property
     def rollers(self) -> Mapping[str, RollerResult]:
-        """What became of each roller, by name."""
+        """Results of the rollers, by name."""
         from mdlgen.results.named import rollers
 
         return rollers(self)
@@ -261,7 +261,7 @@ class Result:
         return probes(self)
 
     def to_pandas(self) -> Any:
-        """What series.csv holds, as a pandas.DataFrame over `time_ms`; units stand in the names of the
+        """The content of series.csv, as a pandas.DataFrame over `time_ms`; units stand in the names of the
         columns. Needs the extra `pandas`.
         """
         from mdlgen.results.io.labelled import frame
@@ -278,7 +278,7 @@ class Result:
 
     @cached_property
     def strains(self) -> Strains | None:
-        """What the joints bear, peaks over the stored times; worked out when first asked for, and kept."""
+        """Peak loads of the joints over the stored times; computed at the first access, and cached."""
         from mdlgen.model.curves import limits
         from mdlgen.results.strain import strains
 
@@ -286,7 +286,7 @@ class Result:
 
     @cached_property
     def borne(self) -> Floats | None:
-        """What all joints bear at all stored times, as `results.strain.all_borne` has it, and kept."""
+        """Loads of all joints at all stored times, see `results.strain.all_borne`; cached."""
         from mdlgen.results.strain import all_borne
 
         return all_borne(self)
@@ -314,7 +314,7 @@ class Result:
 
     @cached_property
     def events(self) -> list[dict[str, Any]]:
-        """What happened to the sheets, by time; worked out when first asked for, and kept."""
+        """Events of the sheets, by time; computed at the first access, and cached."""
         from mdlgen.results.events import events
 
         return events(self)
@@ -337,11 +337,11 @@ class Result:
     def sheet_motion(self, index: int) -> tuple[Floats, Floats, Floats]:
         """Centre of mass [mm], its velocity [mm/ms] and the yaw [rad] of a sheet, (t, 3), (t, 3), (t,).
 
-        The yaw is the turn of boxes about their own normals since the start, what is left of their rotations
-        once the shortest turn that takes the sheet's first normal to theirs is taken off; so it stays as it
-        is where the sheet only bends or goes round a curve. It is the mean over boxes, by their mass times
-        cos^2 of half the angle between both normals, plus the turn of the sheet's x axis about z at the
-        start.
+        The yaw is the rotation of boxes about their own normals since the start. From the rotation of a box
+        the shortest rotation that takes the sheet's first normal to the box's is removed; the rest is its
+        yaw. So the yaw does not change where the sheet only bends or follows a curve. It is the mean over
+        boxes, by their mass times cos^2 of half the angle between both normals. The turn of the sheet's x
+        axis about z at the start is added.
         """
         sheet = self.model.sheets[index]
         boxes = slice(sheet.first, sheet.first + sheet.count)

@@ -1,4 +1,4 @@
-"""What sensors saw over a run: how often, and each sheet that went by."""
+"""Readings of sensors over a run: how often each was covered, and each sheet that passed it."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 if TYPE_CHECKING:
     from mdlgen.results.result import Result
 
-# What is known of a sheet that goes by, by the word of a requirement, and its name in the summary.
+# Measures of a sheet that passes a sensor, by the word of a requirement, and its name in the summary.
 MEASURES = {
     "gap": "gap_mm",
     "speed": "speed_mm_per_s",

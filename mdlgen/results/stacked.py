@@ -1,4 +1,4 @@
-"""Which sheets lie on each other: what a roller presses may be more than the sheet that it touches."""
+"""Detects sheets that lie on each other: a roller may press more sheets than the one that it touches."""
 
 from __future__ import annotations
 
@@ -13,8 +13,8 @@ if TYPE_CHECKING:
 
 
 def stacked(result: Result) -> np.ndarray | None:
-    """Whether two sheets touch, themselves or over others, at each stored time, (t, sheets, sheets), every
-    sheet with itself; None where no two of the scene can."""
+    """A mask of sheets that touch, directly or through others, at each stored time, (t, sheets, sheets), true
+    on the diagonal; None where no two sheets of the scene can touch."""
     model, sheets = result.model, {sheet.name: k for k, sheet in enumerate(result.model.sheets)}
     rows = np.flatnonzero(model.contacts.kind == BOX_BOX).tolist()
     if not rows:
@@ -23,7 +23,7 @@ def stacked(result: Result) -> np.ndarray | None:
     for row in rows:
         one, two = sheets[model.contacts.part_a[row]], sheets[model.contacts.part_b[row]]
         touch = result.contact_force[:, row] > 0.0
-        # all that lies on the one then lies on all that lies on the other
+        # all sheets that lie on sheet `one` then also lie on all that lie on sheet `two`
         joined = together[:, one, :, None] & together[:, two, None, :] & touch[:, None, None]
         together |= joined | joined.transpose(0, 2, 1)
     return together

@@ -75,8 +75,9 @@ def stays_at_meshes(result: Result) -> list[Stay]:
 
 
 def intervals(time: Floats, holds: np.ndarray, short: float) -> list[tuple[int, int]]:
-    """First and last state of each time in which something holds, but for breaks shorter than `short` and
-    what then lasts less than that, unless it is cut off by the start or the end."""
+    """First and last state of each interval in which something holds. Breaks shorter than `short` are
+    bridged. Intervals shorter than that are then dropped, unless the start or the end of the run cuts them
+    off."""
     edges = np.flatnonzero(np.diff(np.concatenate([[False], holds, [False]]).astype(int)))
     runs = [(int(a), int(b) - 1) for a, b in edges.reshape(-1, 2)]
     joined: list[tuple[int, int]] = []

@@ -1,4 +1,4 @@
-"""What the joints of a sheet bear: membrane strain, curvature and twist, and their peaks over a run.
+"""Loads of the joints of a sheet: membrane strain, curvature and twist, and their peaks over a run.
 
 A joint is what connects two boxes, or a box and its clamp: in `edge_to_edge` the two bushings at the shared
 corners together. It stands for the material between the two box centres (between line and centre at a clamp).
@@ -59,10 +59,10 @@ class Peak(Frozen):
 class Strains:
     """Peaks over the stored times of a run, by joint.
 
-    `stretch` and `squeeze` are the greatest and the least membrane strain (elongation over length, of that
-    bushing of the joint that has more of it), `curvature` and `twist` [1/mm] the greatest in magnitude:
-    curvature is positive where the sheet bends towards its normal, twist is the turn about the joint's own
-    direction over its length.
+    `stretch` and `squeeze` are the greatest and the least membrane strain: elongation over length, of the
+    bushing of the joint where it is more extreme. `curvature` and `twist` [1/mm] are the greatest in
+    magnitude. Curvature is positive where the sheet bends towards its normal. Twist is the rotation about the
+    joint's own direction over its length.
     """
 
     joints: SheetJoints
@@ -74,7 +74,7 @@ class Strains:
 
     @property
     def margin(self) -> Floats | None:
-        """What is left up to the limit, as a part of it: 1 unloaded, 0 at the curve's end, (n,).
+        """Reserve up to the limit, as a part of it: 1 unloaded, 0 at the curve's end, (n,).
 
         A curve holds for tension and, with its signs turned, for compression.
         """
@@ -257,7 +257,7 @@ def _borne(result: Result, part: slice | Ints, fixed: _Fixed, axis: int) -> tupl
 
 
 class _Fixed:
-    """What does not change over a run, of some joints; quaternions and vectors component by component."""
+    """Data of some joints that do not change over a run; quaternions and vectors component by component."""
 
     def __init__(self, model: Model, joints: SheetJoints, mine: Ints):
         self.mine = mine

@@ -18,8 +18,8 @@ from mdlgen.results.gates import motion_of, seen
 if TYPE_CHECKING:
     from mdlgen.results.result import Result
 
-# A side that has come to an end no faster than this [mm/ms] was laid there. It is stopped where it goes on at
-# less than this part of the speed at which it came, no further than this from the end [mm].
+# A side that has come to an end no faster than this [mm/ms] was laid there. It is stopped where its speed
+# falls below this part of the speed at which it came, no further than this from the end [mm].
 STANDS, STOPPED, NEAR = 0.01, 0.1, 1.0
 _FACES = 0.35  # cosine of the angle between a side and an end that it comes to, as in mechanics.edge
 
@@ -35,7 +35,7 @@ class Stop(NamedTuple):
 
 
 def stops(result: Result) -> list[Stop]:
-    """Each sheet and plate in contact of which the one is stopped by the other's end at a stored state."""
+    """Each sheet and plate in contact where an end of one stops the other at a stored state."""
     model, found = result.model, []
     parts: dict[str, PlanePart | GuidePart] = {p.name: p for p in (*model.planes, *model.guides)}
     for row in np.flatnonzero(np.isin(model.contacts.kind, ON_PLATES)).tolist():

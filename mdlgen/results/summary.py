@@ -31,7 +31,7 @@ from mdlgen.version import version
 
 
 def summary(result: Result, without: Collection[str] = ()) -> dict[str, Any]:
-    """What summary.json holds; every vector is [x, y, z], every speed that of the centre of mass at the
+    """The content of summary.json; every vector is [x, y, z], every speed that of the centre of mass at the
     end.
 
     A number that is not finite, or that the run did not reach, is None. `without` names what need not be
@@ -125,7 +125,7 @@ def _chaotic(result: Result) -> dict[str, Any]:
 
 
 def versions(result: Result) -> dict[str, str]:
-    """Of what made the result: those that a saved one has, else those that are installed."""
+    """Versions of the packages that made the result: those that a saved one has, else the installed ones."""
     return {"mdlgen": version(), "numpy": np.__version__, **result.versions}
 
 
@@ -191,9 +191,10 @@ def _sheet(result: Result, index: int, bearing: bool) -> dict[str, Any]:
 
 
 def _accounts(result: Result) -> dict[str, float | None]:
-    """What contacts took by friction and rolling, and what is left of all that was dissipated: by dampers of
-    joints, presses and normal forces, in contacts without an account, and between stored states. What drives
-    gave by their torques, and what the solver has besides: between stored states."""
+    """Energy that contacts took by friction and rolling, and the rest of all that was dissipated. The rest is
+    by dampers of joints, presses and normal forces, in contacts without an account, and between stored
+    states. Also the energy that drives brought in by their torques, and what the solver counts beyond that:
+    it falls between stored states."""
     found = result.losses
     names = ("friction", "other_losses", "drives", "drives_unseen")
     if found is None:
@@ -265,8 +266,8 @@ def _bearing(result: Result, index: int) -> dict[str, Any]:
 
 
 def _tension(result: Result, tension: Tension | None) -> dict[str, Any] | None:
-    """Extremes over sections and stored times, and the mean over the run of that section of which it is
-    greatest in size, each with its place along the way from the sheet's centre."""
+    """Extremes over sections and stored times. Also the mean over the run of the section where it is greatest
+    in magnitude. Each has its place along the direction of motion from the sheet's centre."""
     if tension is None:
         return None
     force = tension.force

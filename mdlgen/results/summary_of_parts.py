@@ -1,4 +1,4 @@
-"""What summary.json has of parts of the machine: contacts, energy, and of rollers what turns them."""
+"""Entries of summary.json for parts of the machine: contacts, energy, and torques of rollers."""
 
 from __future__ import annotations
 
@@ -30,8 +30,8 @@ from mdlgen.units import PER_SECOND
 
 
 def _energy_of_part(result: Result, part: MachinePart) -> dict[str, float | None]:
-    """What its drive gave, of a roller, and what its contacts took by friction and rolling, half of what is
-    between two parts of the machine."""
+    """Energy that the drive of a roller put in, and energy that friction and rolling took at the contacts of
+    a part. A contact between two parts of the machine counts half for each part."""
     found = result.losses
     power = None if found is None else found.of(result, part)
     record = {"friction_n_mm": None if power is None else float(np.trapezoid(power, result.time))}
@@ -49,7 +49,7 @@ def part_rows(result: Result, part: MachinePart) -> dict[int, str]:
 
 
 def _contacts(result: Result, rows: dict[int, str]) -> dict[str, dict[str, float | None]]:
-    """What each contact of a part came to."""
+    """Statistics of each contact of a part."""
     statistics = result.statistics
     return {
         other: {
@@ -74,8 +74,8 @@ def _touched(result: Result, part: MachinePart) -> dict[str, Any]:
 
 
 def _drag(result: Result, row: int, drag: Floats) -> dict[str, float | None]:
-    """What a part takes from a sheet by friction: at the end, the greatest of the stored times, and the mean
-    over those at which the two touch."""
+    """Friction drag of a part on a sheet: at the end, the greatest of the stored times, and the mean over
+    those at which the two touch."""
     if not len(drag):
         return dict.fromkeys(("drag_n", "max_drag_n", "mean_drag_n"))
     touches = result.contact_force[:, row] > 0.0
@@ -129,8 +129,8 @@ def _roller(result: Result, roller: RollerPart) -> dict[str, Any]:
 
 
 def _nip(result: Result, roller: RollerPart, rows: dict[int, str]) -> dict[str, Any]:
-    """Of a roller with a cover: width of its nip, by the layer, and speed ratio of the run, under the mean of
-    its force over the stored times at which a sheet, or the other roller, is in the nip."""
+    """Nip of a roller with a cover: width by the layer, and speed ratio of the run. Both are under the mean
+    of its force over the stored times at which a sheet, or the other roller, is in the nip."""
     if roller.cover is None:
         return {}
     sheets = {s.name for s in result.model.sheets}
@@ -146,8 +146,8 @@ def _nip(result: Result, roller: RollerPart, rows: dict[int, str]) -> dict[str, 
 
 
 def _turning(result: Result, roller: RollerPart) -> dict[str, Any]:
-    """What its drive and its contacts turn a roller with, and how much of their grip is used: at the end,
-    and over the stored times the greatest in size and the mean."""
+    """Torques of the drive and the contacts of a roller, and the used part of their grip. Each has the value
+    at the end, the greatest in magnitude over the stored times, and the mean."""
     record: dict[str, Any] = {}
     for name, unit, values in (
         ("torque", "n_mm", drive_torque(result, roller)),
@@ -164,8 +164,8 @@ def _turning(result: Result, roller: RollerPart) -> dict[str, Any]:
 
 
 def _traction(grip: Grip) -> dict[str, float]:
-    """Of one contact over the stored times at which it acts; nan where it never does, which JSON has as
-    null."""
+    """Traction of one contact over the stored times at which it acts; nan where it never does, null in
+    JSON."""
     used = grip.used
     acts = np.isfinite(used)
     if not acts.any():

@@ -30,7 +30,7 @@ _NONE = 1e-12
 
 @dataclass(frozen=True)
 class Tension(Frozen):
-    """Of one sheet over the stored times."""
+    """Tension of one sheet over the stored times."""
 
     axis: int  # sheet axis that it acts along, 0: x (MD), 1: y (CD)
     at: Floats  # place of each section along that axis, from the sheet's centre [mm], (sections,)
@@ -38,12 +38,12 @@ class Tension(Frozen):
 
     @property
     def greatest(self) -> Floats:
-        """Of all sections at each time [N], (t,)."""
+        """Greatest tension of all sections at each time [N], (t,)."""
         return self.force.max(axis=1)
 
     @property
     def least(self) -> Floats:
-        """Of all sections at each time [N], (t,): below 0 where one is pushed."""
+        """Least tension of all sections at each time [N], (t,): below 0 where one is pushed."""
         return self.force.min(axis=1)
 
 
@@ -125,7 +125,7 @@ def _chords(result: Result, part: slice, before: Floats | None, way: Floats) -> 
 
 
 class _Law:
-    """What joints pull with along themselves: (n,) each."""
+    """Forces of joints along their own direction: (n,) each."""
 
     def __init__(self, model: Model, joints: SheetJoints, mine: Ints, axis: int):
         bushings = model.bushings
@@ -139,7 +139,8 @@ class _Law:
         self._bushing, self._curves = joints.bushing[mine], model.curves
 
     def springs(self, more: Floats, less: Floats) -> Floats:
-        """Of the strain of their more and their less stretched bushing, all (t, n)."""
+        """Spring forces by the strain of the more and the less stretched bushing of each joint, all (t,
+        n)."""
         force = 0.5 * self.stiffness * self._length * (more + less)
         if not len(self._curves.of):
             return force
@@ -158,7 +159,7 @@ class _Law:
 
 
 class _Coupling:
-    """What joints across the way pull along it by Poisson's effect (see mechanics.corner)."""
+    """Forces along the way of joints across it, by Poisson's effect (see mechanics.corner)."""
 
     def __init__(self, model: Model, joints: SheetJoints, index: int, mine: Ints, axis: int, starts: Ints):
         self._other = np.flatnonzero((joints.sheet == index) & (joints.axis == 1 - axis))
@@ -239,7 +240,8 @@ class _Moves:
         return self._way * opens, middle
 
     def _of_boxes(self, values: Floats, part: slice) -> Floats:
-        """Of the sheet's boxes with components first, and of the ground behind them where it is held."""
+        """Values of the sheet's boxes with components first, and of the ground behind them where it is
+        held."""
         own = np.moveaxis(values[part, self._boxes], 2, 0)
         return np.pad(own, ((0, 0), (0, 0), (0, 1))) if self._held else np.ascontiguousarray(own)
 
@@ -253,7 +255,7 @@ def _end(
     along: Floats,
     arm: Floats,
 ) -> tuple[Floats, Floats, Floats, Floats]:
-    """Of one end of joints: its place, its velocity, the spin of its body and its direction, (3, t, n)."""
+    """One end of joints: its place, its velocity, the spin of its body and its direction, (3, t, n)."""
     way = lever = np.zeros(1)
     for k, axes in columns.items():
         axis = axes.take(body, axis=2)
@@ -263,12 +265,12 @@ def _end(
 
 
 def _dot(a: Floats, b: Floats) -> Floats:
-    """Of vectors with their components first."""
+    """Dot product of vectors with their components first."""
     return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
 
 
 def _cross(a: Floats, b: Floats) -> Floats:
-    """Of vectors with their components first."""
+    """Cross product of vectors with their components first."""
     found = np.empty(np.broadcast_shapes(a.shape, b.shape))
     for i, j, k in ((0, 1, 2), (1, 2, 0), (2, 0, 1)):
         found[i] = a[j] * b[k] - a[k] * b[j]

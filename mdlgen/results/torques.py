@@ -1,10 +1,10 @@
-"""Torques of rollers, what drives give them, and how much of the grip of their contacts is used.
+"""Torques of rollers from contacts and drives, and the used part of the grip of their contacts.
 
-Signs are those of a turn about the roller's axis as it is given. What contacts do to a roller is the sum over
-its contacts, and those of meshes on it, of friction and rolling resistance. A drive gives what is left of
-the roller's inertia times its angular acceleration: M = I dw/dt - contacts, and M times the speed of its
-shaft as power. A roller that is free has no drive; one with a clutch or a limiter is driven through that, and
-one with a motor by its law (results.motors). The motor of a shaft counts at the roller that leads it.
+Signs are those of a rotation about the roller's axis as it is given. The torque of contacts is the sum of
+friction and rolling resistance over the roller's contacts and those of meshes on it. The drive supplies the
+rest of inertia times angular acceleration: M = I dw/dt - contacts. Its power is M times the speed of its
+shaft. A free roller has no drive. A clutch, a limiter or a motor follows its own law (mechanics.driven,
+results.motors). The motor of a shaft counts at the roller that leads it.
 """
 
 from __future__ import annotations
@@ -54,7 +54,7 @@ def rows_of(result: Result, roller: RollerPart) -> Iterator[tuple[int, int, str]
 
 
 def contact_torque(result: Result, roller: RollerPart) -> Floats | None:
-    """What contacts turn a roller with about its axis [N mm], (t,); None where a result does not have it."""
+    """Torque of contacts on a roller about its axis [N mm], (t,); None where a result does not have it."""
     if result.contact_torque is None:
         return None
     total = np.zeros(len(result.time))
@@ -64,7 +64,7 @@ def contact_torque(result: Result, roller: RollerPart) -> Floats | None:
 
 
 def drive_torque(result: Result, roller: RollerPart) -> Floats | None:
-    """What its drive turns a roller with about its axis [N mm], (t,), 0 of a free one."""
+    """Torque of the drive on a roller about its axis [N mm], (t,), 0 for a free one."""
     if roller.axle is not None:
         return axle_torque(result, roller)
     if roller.speed is None or roller.leader >= 0:
@@ -78,7 +78,7 @@ def drive_torque(result: Result, roller: RollerPart) -> Floats | None:
 
 
 def drive_power(result: Result, roller: RollerPart) -> Floats | None:
-    """What its drive gives a roller [W], (t,): its torque times the speed of its shaft, in N mm/ms; of a
+    """Power of the drive of a roller [W], (t,): its torque times the speed of its shaft, in N mm/ms; of a
     motor behind its gear."""
     torque = drive_torque(result, roller)
     if torque is None:
@@ -136,7 +136,7 @@ def _acceleration(result: Result, roller: RollerPart) -> Floats:
 
 
 def _clutch(result: Result, roller: RollerPart) -> Floats:
-    """What the shaft turns a roller with through its clutch, as mechanics.driven.clutch has it."""
+    """Torque of the shaft on a roller through its clutch, see mechanics.driven.clutch."""
     way = roller.one_way
     assert way is not None, "asked only of a roller with a clutch"
     behind = aimed(result, roller, result.time) - result.spin[:, roller.body] @ roller.axis

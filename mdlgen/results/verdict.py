@@ -1,4 +1,4 @@
-"""Whether a run does what its scene requires, and what happened that a reader should know anyway."""
+"""Judges the requirements of a scene after a run, and lists events that a reader should know of."""
 
 from __future__ import annotations
 
@@ -44,8 +44,8 @@ ROUND_OFF = 1e-9
 
 @dataclass(frozen=True)
 class Outcome:
-    """What became of one requirement. `value` and `margin` are in `unit`; a margin below zero is what is
-    missing. Of a measure that is not known the value is None, and it is missed."""
+    """Outcome of one requirement. `value` and `margin` are in `unit`; a margin below zero is the shortfall. A
+    measure that is not known has the value None, and its requirement is missed."""
 
     requirement: str
     passed: bool
@@ -65,7 +65,7 @@ class Outcome:
             return f"{verdict}  {self.requirement}" + (f": {self.value:g} times" if self.value else "")
         unit = "" if self.unit in ("", "%") else f" {self.unit}"
         end = self.unit if self.unit == "%" else ""
-        # what is small beside its distance from the limit is round-off
+        # a value that is small compared with its distance from the limit is round-off
         value = 0.0 if abs(self.value) < ROUND_OFF * abs(self.margin) else self.value
         whose = f" of {self.of}" if self.of else ""
         unit = end + unit
@@ -73,9 +73,9 @@ class Outcome:
 
 
 def verdict(result: Result, record: Mapping[str, Any]) -> dict[str, Any]:
-    """What `verdict` in summary.json holds, from a summary: whether all passed (None: nothing is required),
-    each requirement with its value and margin, and whether the error of the run could turn it round, and
-    notable events in words. Raises SpecError."""
+    """The content of `verdict` in summary.json, from a summary: `passed` (None: nothing is required), each
+    requirement with its value and margin, and notable events in words. A requirement also says if the error
+    of the run could reverse it. Raises SpecError."""
     outcomes = judge(result, record)
     return {
         "passed": all(o.passed for o in outcomes) if outcomes else None,
@@ -146,7 +146,7 @@ def in_words(event: Mapping[str, Any]) -> str:
 
 
 def motor_in_words(event: Mapping[str, Any]) -> str:
-    """What happens to a motor or a torque limiter."""
+    """The message about an event of a motor or a torque limiter."""
     at = f"at {event['roller']} from {event['time_ms']:.4g} ms"
     if event["kind"] == "lost_steps":
         return f"stepper {at} loses {event['steps']} steps"
@@ -156,7 +156,7 @@ def motor_in_words(event: Mapping[str, Any]) -> str:
 
 
 def creep_in_words(event: Mapping[str, Any]) -> str:
-    """What a sheet that friction holds does, where and why; `friction.sticking` of the contact avoids it."""
+    """The message about a sheet that creeps; `friction.sticking` of the contact avoids it."""
     smoothing, stiction = event["smoothing_mm_per_s"], event["stiction_velocity_mm_per_s"]
     speed = f"{'smoothing' if smoothing == stiction else 'stiction velocity'} {stiction:.3g} mm/s"
     return (
@@ -244,7 +244,7 @@ def _limit(result: Result, record: Mapping[str, Any], wanted: Requirement) -> Ou
 
 
 def _at_sensor(record: Mapping[str, Any], wanted: Requirement, sensor: str) -> Outcome:
-    """Of what each sheet did as it went by a sensor; where none did, or no two, nothing is known."""
+    """Outcome for sheets that passed a sensor; if none did, or no two, nothing is known."""
     name = MEASURES[wanted.measure or ""]
     unit = next(unit for end, unit in UNITS.items() if name.endswith(end))
     own = parse_unit(unit)
@@ -307,7 +307,7 @@ def _values(result: Result, record: Mapping[str, Any], path: str, wanted: Requir
 
 
 def _while_there(result: Result, path: str, values: Floats) -> Floats:
-    """Of a measure of a sheet the values at the times at which that is there."""
+    """Values of a measure of a sheet at the times at which the sheet is present."""
     when, words = there(result), path.split(".")
     number = {sheet.name: k for k, sheet in enumerate(result.model.sheets)}
     if when is None or words[0] != "sheets" or words[1] not in number:

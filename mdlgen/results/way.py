@@ -17,7 +17,7 @@ STANDS = 0.01  # mm/ms: a slower sheet has no direction
 
 @dataclass(frozen=True)
 class Way:
-    """Of one sheet, over the stored times: all of it (t,)."""
+    """Motion of one sheet along its path over the stored times: all of it (t,)."""
 
     length: Floats  # mean way of its boxes in their own planes since the start [mm]
     speed: Floats  # mean speed of its boxes in their own planes [mm/ms]

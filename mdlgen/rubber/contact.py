@@ -26,7 +26,7 @@ import numpy as np
 from mdlgen.rubber.layer import Floats, Layer, responses
 
 _TERMS = 24  # of the pressure: 1e-6 of the load where the nip is ten times as wide as its cover is thick
-_FADED = 16.0  # of k t: what is left of exp(-2 k t) there is 1e-14
+_FADED = 16.0  # of k t: exp(-2 k t) has decayed to 1e-14 there
 # Of k a: beyond, a round cover differs from a half-space by 1/(k R), of which the pressure has 1e-4.
 _NEAR = 60.0
 _FAR = 100.0  # of k a: the square of the pressure's transform beyond is 1e-6 of all
@@ -37,7 +37,7 @@ WIDEST = 0.5  # of the radius: half-width of a nip, at which a parabola is 6 % o
 
 
 class Pressed(NamedTuple):
-    """What one cover does in a nip: greatest indentation [mm], and by how much the sheet goes faster."""
+    """Deformation of one cover in a nip: greatest indentation [mm], and gain in speed of the sheet."""
 
     depth: float
     gain: float

@@ -10,7 +10,7 @@ r^n, r^(2 - n), r^-n (Barber, Elasticity, Table 9.1), none at the core. n need n
 falls off within a few thicknesses, and does not come round. Hahn and Levinson (1974) solved the nip of two
 rollers so.
 
-Of a flat layer, R infinite, with kappa = 3 - 4 nu and s = k t,
+For a flat layer, R infinite, with kappa = 3 - 4 nu and s = k t,
 
     L(s) = (2 kappa sinh 2s - 4 s)/D,    T(s) = (kappa (kappa - 1) (cosh 2s - 1) - 4 s^2)/D,
     D = 2 kappa cosh 2s + 4 s^2 + 1 + kappa^2.

@@ -1,1 +1,1 @@
-"""Runs as such: what they can be gone on with, and what their bits follow from."""
+"""Runs as such: checkpoints to resume them from, and the provenance that determines their bits."""

@@ -1,8 +1,8 @@
-"""Checkpoints: states of a run on the disk, from which it goes on, and a view of its part so far.
+"""Checkpoints: states of a run on the disk, from which it is resumed, and a view of its part so far.
 
-A run consists of passes, at a step each. What a pass carries from one stored time to the next is written as
-it is, array by array, so that a run that goes on from there takes the same steps to the last bit. A pass
-that has no checkpoint is run again.
+A run consists of passes, each with its own step. The state of a pass at a stored time is written unchanged,
+array by array, so that a resumed run takes bitwise identical steps. A pass that has no checkpoint is run
+again.
 """
 
 from __future__ import annotations
@@ -50,7 +50,7 @@ class Checkpointer:
         self._last[number] = max(self._last.values(), default=time.monotonic())
 
     def due(self, number: int) -> bool:
-        """Whether it is time to write the state of a pass."""
+        """True if it is time to write the state of a pass."""
         return self.folder is not None and time.monotonic() - self._last[number] >= self.every
 
     def save(self, number: int, state: State) -> None:

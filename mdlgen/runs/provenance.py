@@ -1,6 +1,6 @@
-"""Provenance: what the bits of a run follow from, and whether another run would have the same.
+"""Provenance: all that determines the bits of a run, and a check that another run would have the same.
 
-One that goes on from a checkpoint or a journal must have all of it in common with what it continues.
+A run that resumes from a checkpoint or a journal must have the same provenance as the one that it continues.
 """
 
 from __future__ import annotations
@@ -57,8 +57,8 @@ def _add(value: Any, update: Callable[[bytes], None]) -> None:
 
 
 def provenance(packages: tuple[str, ...]) -> dict[str, str]:
-    """Name -> value of what bits follow from beside the Model: the code of some packages, versions of Python
-    and of the compiler."""
+    """Name -> value of all that determines the bits, apart from the Model: the code of some packages,
+    versions of Python and of the compiler."""
     code = hashlib.sha256()
     for package in packages:
         found = find_spec(package)
@@ -76,7 +76,7 @@ def provenance(packages: tuple[str, ...]) -> dict[str, str]:
 
 
 def _compiled() -> str:
-    """What machine code the solvers' programs have here."""
+    """The kind of machine code that the solvers' programs have here."""
     target = None if bitcode_only() else emit.shipped()
     return "from bitcode" if target is None else f"for {target}"
 
@@ -91,9 +91,9 @@ _WORDS = {"model": "a file that the scene names", "code": "the solver's code"}
 
 
 def check_same(folder: Path, there: Mapping[str, Any], now: Mapping[str, str]) -> None:
-    """Raises RefusedError by name where what is in `folder` would not go on to the same bits.
+    """Raises RefusedError by name where the run in `folder` would not resume with bitwise identical results.
 
-    `there` holds the provenance and the digest of the Model as they were, `now` as they are.
+    `there` holds the provenance and the digest of the Model at that time, `now` those of this process.
     """
     for name, value in now.items():
         if there.get(name) != value:

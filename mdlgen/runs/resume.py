@@ -1,4 +1,4 @@
-"""A run that was cut off, and goes on: what it was asked for, in the folder of its results."""
+"""Resumes a run that was cut off: its request is stored in the folder of its results."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ FOLDER, FILE = "checkpoint", "run.json"
 
 @dataclass(frozen=True)
 class RunRequest:
-    """What a run was asked for."""
+    """The request of a run."""
 
     spec: str  # the file's name, and its text
     text: str
@@ -52,7 +52,7 @@ def request(
 def checkpointer(
     folder: Path, of: RunRequest, model: Model, every: float, packages: tuple[str, ...]
 ) -> Checkpointer:
-    """Writes a state of the run into `folder`, beside its results, every so many seconds; `packages` have
+    """Writes a state of the run into `folder`, next to its results, every so many seconds; `packages` have
     the solver's code."""
     from mdlgen.runs.checkpoint import Checkpointer
     from mdlgen.runs.provenance import digest
@@ -66,19 +66,19 @@ def checkpointer(
 
 @functools.cache
 def code(packages: tuple[str, ...]) -> dict[str, str]:
-    """What bits follow from in this process: to be asked for before its files can have changed."""
+    """Provenance of this process: to be read before its files can have changed."""
     from mdlgen.runs.provenance import processor, provenance
 
     return provenance(packages) | processor()
 
 
 def can_resume(folder: Path) -> bool:
-    """Whether there is a run in `folder` to continue."""
+    """True if there is a run in `folder` to continue."""
     return (folder / FOLDER / FILE).is_file()
 
 
 def resumed(folder: Path) -> tuple[RunRequest, dict[str, Any]]:
-    """What the run in `folder` was asked for, and its provenance. Raises OutputError."""
+    """The request of the run in `folder`, and its provenance. Raises OutputError."""
     from mdlgen.paths import read_at_most, recover
 
     place = folder / FOLDER
@@ -101,7 +101,7 @@ def resumed(folder: Path) -> tuple[RunRequest, dict[str, Any]]:
 
 
 def check_same(folder: Path, there: dict[str, Any], model: Model, packages: tuple[str, ...]) -> None:
-    """Raises RefusedError by name where a run would not go on to the same bits."""
+    """Raises RefusedError by name where a run would not resume with bitwise identical results."""
     from mdlgen.runs import provenance
 
     provenance.check_same(folder, there, {"model": provenance.digest(model), **code(packages)})

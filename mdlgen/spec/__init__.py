@@ -1,1 +1,1 @@
-"""What the user writes: one noun per file, validated by pydantic, held in internal units."""
+"""The scene as a user writes it: one noun per file, validated by pydantic, held in internal units."""

@@ -1,4 +1,4 @@
-"""What acts on a sheet or is read from it at a material point or an edge: loads, supports, probes."""
+"""Loads, supports and probes of a sheet, each at a material point or an edge."""
 
 from __future__ import annotations
 

@@ -1,5 +1,5 @@
-"""Where a file is that a scene names: beside that of the scene; for a scene made in Python anywhere. And what
-its name is from another folder."""
+"""Resolves the path of a file that a scene names. It is relative to the scene's own file; a scene made in
+Python may name any path. Also rewrites the path for use from another folder."""
 
 from __future__ import annotations
 

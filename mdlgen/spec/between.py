@@ -1,4 +1,4 @@
-"""Which pairs of parts the contacts of a scene are between, and what is wrong where one cannot be."""
+"""The pairs of parts that the contacts of a scene name, and the errors for pairs that cannot touch."""
 
 from __future__ import annotations
 

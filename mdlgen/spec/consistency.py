@@ -1,4 +1,5 @@
-"""What of a scene must go together: names that are used, names that are free, counts within the limits."""
+"""Checks across a scene: names that are used exist, names are not used twice, counts are within the
+limits."""
 
 from __future__ import annotations
 
@@ -25,7 +26,7 @@ if TYPE_CHECKING:
 
 
 def checks(scene: Scene) -> Iterator[Callable[[], None]]:
-    """What is to be looked at one by one, so that each mistake is reported."""
+    """The checks of a scene, one by one, so that each mistake is reported."""
     for name in scene.sheets:
         yield partial(_check_material, scene, name)
     for kind in ("probes", "loads", "supports"):

@@ -56,7 +56,7 @@ def _number_or_both(schema: dict[str, Any]) -> None:
 
 Side = str | tuple[str, ...]
 
-# Whether a scene that is read has a roller with a cover, of which a stiffness may follow.
+# True while the scene that is read has a roller with a cover, from which a stiffness may follow.
 _COVERED: ContextVar[bool] = ContextVar("covered", default=False)
 
 

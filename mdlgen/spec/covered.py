@@ -1,4 +1,4 @@
-"""What follows from the covers of rollers: nips, and stiffness of contacts that leave it out."""
+"""Values that follow from the covers of rollers: nips, and stiffness of contacts that leave it out."""
 
 from __future__ import annotations
 

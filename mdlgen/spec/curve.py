@@ -1,4 +1,4 @@
-"""A measured stress-strain curve of a material: points, inline or from a file beside the spec."""
+"""A measured stress-strain curve of a material: points, inline or from a file in the folder of the spec."""
 
 from __future__ import annotations
 

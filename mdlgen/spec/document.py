@@ -56,7 +56,7 @@ class Document:
         return Place(self.file, 1, 1)
 
     def copy(self) -> Document:
-        """One that can be changed beside this one."""
+        """A copy that can be changed without changing this document."""
         return Document(deepcopy(self.data), dict(self.places), dict(self.keys), self.file, self.text)
 
     def line(self, place: Place | None) -> str:

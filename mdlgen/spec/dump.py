@@ -31,7 +31,7 @@ def said(scene: Scene, data: dict[str, Any], info: SerializationInfo) -> dict[st
     if scene.contacts_made and "contacts" in data:
         data["contacts"] = data["contacts"][:kept]
     if info.exclude_defaults or info.exclude_none or info.exclude_unset:
-        # what is left out here would be filled in with them; the nips have them already
+        # values that are left out here would be filled in from the defaults; the nips already have them
         data.pop("defaults", None)
     for path, formula in scene.formulas.items():
         if path[1:2] and path[1] in {"rollers": of_nips, "sheets": of_piles}.get(str(path[0]), ()):
@@ -45,8 +45,8 @@ def said(scene: Scene, data: dict[str, Any], info: SerializationInfo) -> dict[st
 
 
 def in_plain_data(given: dict[str, Any]) -> dict[str, Any]:
-    """What a scene is made of in Python as a file would have it: parts as mappings, without what is null and
-    tables without entries."""
+    """A scene made in Python as the data that a file would have: parts as mappings, without null values and
+    without empty tables."""
     data = _plain(given)
     with_whole_names(data)
     # null leaves out a default, or what a nip has

@@ -25,7 +25,7 @@ MOST_SPEEDS = 8  # rows of a table over the speed
 # What a coefficient may be given as: keys that go together.
 _FORMS = (("mu",), ("static", "dynamic"), ("md", "cd"), ("front", "back"), ("speed",))
 _HOW = "mu, static and dynamic, md and cd, front and back, or speed"
-# Forms that go together: a table is then followed in times of its first coefficient.
+# Forms that may be combined: the table of speeds is then relative to its first coefficient.
 _SHAPED = ({("md", "cd"), ("speed",)}, {("front", "back"), ("speed",)})
 
 
@@ -158,7 +158,7 @@ class Friction(Strict):
 
     @model_validator(mode="after")
     def _derived(self) -> Friction:
-        """The coefficients that all else is in times of, where they follow from the form given: the least."""
+        """The reference coefficients, the least of the form given; all other values are relative to them."""
         if self.stribeck_velocity is not None and self.friction_velocity is not None:
             raise fail("give stribeck_velocity or friction_velocity, not both")
         if self.speed is not None:
@@ -220,7 +220,7 @@ class Friction(Strict):
 
     @property
     def measured(self) -> bool:
-        """Whether it is more than two coefficients and their speeds."""
+        """True if it is more than two coefficients and their speeds."""
         forms = (self.md, self.front, self.pressure, self.scatter, self.stribeck_velocity)
         return any(form is not None for form in forms) or (self.speed is not None and len(self.speed) > 2)
 

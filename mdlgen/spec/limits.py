@@ -1,4 +1,4 @@
-"""What a scene may grow to. Counts are looked at before anything is built; a limit can be raised by name."""
+"""Limits on the size of a scene. Counts are checked before anything is built; a limit is raised by name."""
 
 from __future__ import annotations
 
@@ -15,9 +15,9 @@ _MOST = 1e12  # above this nothing is a count
 
 
 class Limits(NamedTuple):
-    """Greatest counts: boxes of all sheets, pairs of bodies that are kept, pairs of parts that the contacts
-    name, states that a run stores (bodies times outputs, some 150 bytes each), values in the text, triangles
-    of all meshes, and points of all measured curves."""
+    """Greatest counts: boxes of all sheets, stored pairs of bodies, and pairs of parts that the contacts
+    name. States that a run stores (bodies times outputs, some 150 bytes each), and values in the MDL file.
+    Triangles of all meshes, and points of all measured curves."""
 
     boxes: int = 100_000
     pairs: int = 1_000_000

@@ -122,7 +122,7 @@ class Arm(Strict):
 
     @property
     def sprung(self) -> bool:
-        """Whether anything but weight and contact turns it."""
+        """True if a spring, a damper or a torque turns it, not only weight and contact."""
         return any(value != 0.0 for value in (self.torque, self.stiffness, self.damping))
 
 

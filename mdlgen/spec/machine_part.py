@@ -1,4 +1,4 @@
-"""What every part of the machine with a body is: what it is called, and what it may be in contact with."""
+"""The base of every part of the machine with a body: its name, and the parts that it may touch."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ class MachinePart(Strict):
     kind: ClassVar[str]  # what one is called in a sentence
 
     def unlike_sheets(self, name: str, contact: Contact) -> tuple[str, str] | None:
-        """What a contact with a sheet must not have: its key, and the message; None: nothing."""
+        """A key that its contact with a sheet must not have, and the message; None: all keys are allowed."""
         return None
 
     def unlike_roller(self, names: tuple[str, str], roller: Roller) -> str | None:
@@ -38,7 +38,7 @@ def not_modelled(names: tuple[str, str]) -> str:
 
 
 def cosine(one: tuple[float, float, float], two: tuple[float, float, float]) -> float:
-    """Of the angle between two unit vectors."""
+    """Cosine of the angle between two unit vectors."""
     return max(-1.0, min(1.0, sum(p * q for p, q in zip(one, two, strict=True))))
 
 
@@ -62,7 +62,7 @@ def rim_of_sectors(names: tuple[str, str], other: str) -> str:
 
 
 def classes_of(scene: type[Any]) -> dict[str, type[MachinePart]]:
-    """What the tables of a scene that are of the machine hold, by their names, in the order of the bodies."""
+    """Classes of the machine's parts in the tables of a scene, by table, in the order of the bodies."""
     held = ((name, get_args(field.annotation)[-1:]) for name, field in scene.model_fields.items())
     classes = ((name, of[0]) for name, of in held if of and isinstance(of[0], type))
     return {name: of for name, of in classes if issubclass(of, MachinePart)}

@@ -1,4 +1,4 @@
-"""Which forms of measured friction the contact of two parts may have."""
+"""The forms of measured friction that the contact of two parts may have."""
 
 from __future__ import annotations
 

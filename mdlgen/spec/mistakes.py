@@ -1,4 +1,4 @@
-"""What is wrong with a scene: each mistake in one line, with its place in the text and an example."""
+"""Mistakes in a scene: each in one line, with its place in the text and an example."""
 
 from __future__ import annotations
 
@@ -22,12 +22,12 @@ from mdlgen.spec.setting import MADE, made
 from mdlgen.spec.shorthand import in_the_text, written_out
 
 MOST = 20
-# Tables of parts by name: what --set makes anew here is more often a name that is misspelt.
-_MOST_LOOKS = 1000  # at names beside other mistakes
+# Tables of parts by name: a table that --set would create here is more often a misspelt name.
+_MOST_LOOKS = 1000  # greatest number of similar names tried, over all mistakes
 _PARTS = ("sheets", *Scene.machine_tables(), "parts")
 _TABLES = ("parameters", "materials", *_PARTS, "nips", "piles", "streams", "probes")
 _NAMED = ("contacts", *_TABLES)
-# What stands behind a decimal comma: digits, perhaps with a unit.
+# Text after a decimal comma: digits, perhaps with a unit.
 _REST = re.compile(r"[0-9]+(?: *[A-Za-z%][\w/*^.%]*)?")
 
 
@@ -78,7 +78,7 @@ class Mistakes:
                 self.add(_describe({"type": "spec", "loc": (), "ctx": record.context}, self.document))
 
     def _spelt_otherwise(self, path: SpecPath, errors: Sequence[Any]) -> bool:
-        """Whether a key is missing since it is misspelt: then that is said, and this is not."""
+        """True if a key is missing because it is misspelt: the misspelling is reported instead."""
         given = [
             str(e["loc"][-1]) for e in errors if e["type"] == "extra_forbidden" and e["loc"][:-1] == path[:-1]
         ]

@@ -38,7 +38,7 @@ Voltage = Annotated[tuple[TimeOrZero, Annotated[float, ratio(-1.0, 1.0)]], pair_
 
 
 class Bearing(Strict):
-    """What the bearing of a roller or a shaft takes: friction and viscous drag."""
+    """Losses in the bearing of a roller or a shaft: friction and viscous drag."""
 
     torque: TorqueOrZero = Field(
         default=default("0 N*mm"), description="friction torque, whatever the speed is"
@@ -164,7 +164,7 @@ class Motor(Strict):
 
     @property
     def open(self) -> bool:
-        """Whether its speed is that at which the torque-speed line meets the load."""
+        """True if its speed is that at which the torque-speed line meets the load."""
         return self.control is None and self.steps is None
 
     @property

@@ -13,7 +13,7 @@ from mdlgen.spec.machine_part import MachinePart
 from mdlgen.spec.quantities import default, quantity
 from mdlgen.spec.strict import Strict, fail
 
-# A solver keeps them beside each body, each with the speed there.
+# A solver stores them in the record of each body, each with the speed there.
 MOST_PLACES = 10
 SAME = 1e-12  # rad or mm: a profile that begins this near to 0 begins there, by round-off
 
@@ -34,7 +34,7 @@ _PROFILE = (
 
 
 class _Motion(Strict):
-    """What a pivot and a slide have in common."""
+    """The keys that a pivot and a slide have in common."""
 
     inert: ClassVar[str]  # the key without which it is prescribed
     push: ClassVar[str]
@@ -76,7 +76,7 @@ class _Motion(Strict):
                     )
             return self
         for key in (self.push, "stiffness", "damping", "stops"):
-            if getattr(self, key):  # what is left out has no force
+            if getattr(self, key):  # a key that is left out has no force
                 raise fail(
                     f"{key} acts on a part that is free to move, which needs {self.inert}", within=(key,)
                 )

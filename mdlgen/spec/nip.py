@@ -266,7 +266,7 @@ class _Written:
         return found + self._weight(side, press, down)
 
     def _between(self) -> str | None:
-        """What is left of the sheet between the two rollers."""
+        """Formula of the sheet's thickness between the two rollers, less both depths."""
         low, high = (self._depth(side) for side in SIDES)
         return f"{self.thickness} - {low} - {high}" if self.thickness and low and high else None
 

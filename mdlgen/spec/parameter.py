@@ -39,7 +39,7 @@ class Unknown(ValueError):
 
 
 class Parameters:
-    """What each parameter comes to, and what is wrong with those that have no value.
+    """Values of all parameters, and the errors of those that have no value.
 
     One is given as a value, or as `{value: 3 N, range: [1 N, 5 N]}`: the range is that of its slider.
     """
@@ -62,7 +62,7 @@ class Parameters:
                     self.wrong_ranges[name] = str(error)
 
     def evaluated(self, text: str) -> Amount:
-        """What a formula comes to. Raises ValueError."""
+        """The value of a formula. Raises ValueError."""
         try:
             wrong = [name for name in formulas.names(text) if name in self.errors]
         except ValueError:
@@ -101,7 +101,7 @@ class Parameters:
         return self._amount_of(value, name, users)
 
     def _amount_of(self, value: Any, name: str, users: tuple[str, ...]) -> Amount:
-        """What a value of that parameter comes to."""
+        """The amount that a given value of that parameter stands for."""
         if isinstance(value, Amount):
             return value
         if isinstance(value, (int, float)) and not isinstance(value, bool):
@@ -159,12 +159,12 @@ def current() -> Parameters:
 
 
 def amount(text: object) -> Amount | None:
-    """What a text comes to if it is a formula; None where it is none. Raises ValueError."""
+    """The value of a text that is a formula; None where it is none. Raises ValueError."""
     return _OF_SCENE.get().evaluated(text) if isinstance(text, str) and is_formula(text) else None
 
 
 def is_formula(text: str) -> bool:
-    """Whether a text is meant as a formula in the scene that is being read."""
+    """True if a text is meant as a formula in the scene that is being read."""
     return formulas.is_formula(text, _OF_SCENE.get().given)
 
 

@@ -1,4 +1,4 @@
-"""What must go together where sheets come in and leave during a run."""
+"""Consistency checks of sheets that come in and leave during a run."""
 
 from __future__ import annotations
 

@@ -57,7 +57,7 @@ def names_of(name: str, pile: Any) -> list[str]:
 
 def written(data: dict[str, Any], origins: dict[Path, Path], fill: Fill) -> None:
     """Puts the sheets of piles in the place of those that they are of, and adds their contacts, which are a
-    list; `fill` gives a contact its defaults. What is not of the right form is left for validation."""
+    list; `fill` gives a contact its defaults. Data of a wrong form are left for validation."""
     piles, sheets = data.get("piles"), data.get("sheets")
     if not isinstance(piles, dict) or not isinstance(sheets, dict):
         return

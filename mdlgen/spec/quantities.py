@@ -19,7 +19,7 @@ from mdlgen.spec.parameter import Computed, Unknown, amount, computed
 from mdlgen.spec.strict import fail
 from mdlgen.units import check_unit, exact_quantity, parse_quantity, parse_unit
 
-# What a quantity may be in the unit of its field, but for 0: products of some of them are still numbers.
+# Allowed range of a quantity in the unit of its field, except 0: products of some of them stay finite.
 SMALLEST, LARGEST = 1e-20, 1e20
 
 
@@ -107,7 +107,7 @@ class one_or_two(quantity):
 
 
 def _each(read: Callable[[Any], float], value: Any, example: str) -> float | tuple[float, float]:
-    """What `read` makes of a value, or of each of two in a list."""
+    """The value that `read` returns for a value, or for each of two in a list."""
     if not isinstance(value, (list, tuple)):
         return read(value)
     if len(value) != 2:
@@ -181,7 +181,7 @@ def of_text(text: Any, unit: str) -> float:
 
 
 def _or_error(read: Callable[[], Any]) -> Any:
-    """What is read, with its mistakes as errors for pydantic."""
+    """The value that `read` returns, with its mistakes as errors for pydantic."""
     try:
         return read()
     except Unknown as error:

@@ -1,4 +1,4 @@
-"""What sensors and rules of a scene name, and what is wrong where there is no such thing."""
+"""Checks that the names in sensors and rules of a scene exist, and the errors where they do not."""
 
 from __future__ import annotations
 
@@ -140,7 +140,7 @@ COMMANDED: dict[str, Callable[[Scene, str, tuple[str | int, ...]], list[str]]] =
 
 
 def checks(scene: Scene) -> Iterator[Callable[[], None]]:
-    """What is to be looked at one by one, so that each mistake is reported."""
+    """The checks of sensors and rules, one by one, so that each mistake is reported."""
     for count, most, key in (
         (len(scene.sensors), MOST_SENSORS, "sensors"),
         (len(scene.rules), MOST_RULES, "rules"),

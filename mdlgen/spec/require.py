@@ -1,4 +1,4 @@
-"""What a scene has to do: the texts of `require`, read.
+"""Requirements of a scene: parses the texts of `require`.
 
 no EVENT [at PART]
 MEASURE below VALUE | above VALUE | within VALUE [of VALUE] | from VALUE to VALUE    [at TIME | throughout]

@@ -11,7 +11,7 @@ from mdlgen.spec.fields import Angle, PositiveLength
 from mdlgen.spec.quantities import default
 from mdlgen.spec.strict import Strict, fail
 
-# A solver keeps them beside each body, with the gaps between them.
+# A solver stores them in the record of each body, with the gaps between them.
 MOST_SECTORS = 8
 TURN = 2.0 * math.pi
 _SAME = 1e-9  # rad: two sectors that meet may differ by the rounding of their angles

@@ -46,7 +46,7 @@ class Mirror(Strict):
 
 
 def expanded(data: dict[str, Any], origins: dict[Path, Path]) -> dict[str, Any]:
-    """The entries of rollers, planes and nips one by one. What is not of the right form stays as it is."""
+    """The entries of rollers, planes and nips one by one. Entries of a wrong form stay as they are."""
     made = dict(data)
     for kind in KINDS:
         table = data.get(kind)
@@ -63,7 +63,7 @@ def expanded(data: dict[str, Any], origins: dict[Path, Path]) -> dict[str, Any]:
 
 
 def _row(name: Any, entry: Any) -> list[tuple[Any, Any]]:
-    """What one entry stands for."""
+    """The names and entries that one entry is expanded to."""
     if not isinstance(entry, dict) or not isinstance(name, str) or not _ALONE.isdisjoint(entry):
         return [(name, entry)]
     row = [(name, {key: value for key, value in entry.items() if key not in ("repeat", "mirror")})]
@@ -90,7 +90,7 @@ def _row(name: Any, entry: Any) -> list[tuple[Any, Any]]:
 
 
 def _repeated(repeat: Any) -> list[str] | None:
-    """What stands for `*` in each name; None where it is not of the right form."""
+    """Replacements for `*` in each name; None where `repeat` is not of the right form."""
     if not isinstance(repeat, dict) or set(repeat) - {"count", "step", "names"}:
         return None
     count, step = repeat.get("count"), repeat.get("step")

@@ -68,7 +68,7 @@ class ToPlace(Strict):
 
 
 class Action(Strict):
-    """What a rule does: any of these, at once."""
+    """Actions of a rule: any of these, at once."""
 
     speed: dict[str, Annotated[ToSpeed, _short("speed"), OR_TEXT]] = Field(
         default_factory=dict,
@@ -106,7 +106,7 @@ class Action(Strict):
 
 
 class Rule(Strict):
-    """Does something each time a condition comes true. What is true as the run begins comes true then."""
+    """Acts each time a condition becomes true. A condition that is true as the run begins acts then."""
 
     model_config = ConfigDict(populate_by_name=True)
 

@@ -179,7 +179,7 @@ class Scene(Strict):
 
     @property
     def amounts(self) -> dict[str, Amount]:
-        """What each parameter comes to."""
+        """The values of the parameters."""
         return self._amounts
 
     @property
@@ -204,14 +204,14 @@ class Scene(Strict):
 
     @property
     def limits(self) -> Limits:
-        """What the scene may grow to; not part of what is written."""
+        """The limits on the size of the scene; they are not written out."""
         return self._limits
 
     def with_(self, changes: Mapping[str, Any] | None = None, **more: Any) -> Scene:
         """The scene with other values, by dotted path as of `--set`.
 
-        `{"rollers.motor.drive.speed": "60 rad/s"}`; a path may have patterns, and what follows from a value
-        follows anew. Raises SpecError.
+        `{"rollers.motor.drive.speed": "60 rad/s"}`; a path may have patterns. Values that follow from a
+        changed value are computed again. Raises SpecError.
         """
         from mdlgen.spec.load import meant
 
@@ -219,8 +219,8 @@ class Scene(Strict):
         return meant(self._document(), overrides, self._folder_of_names(), self._limits)
 
     def check(self) -> list[Lint]:
-        """What `mdlgen check` finds: allowed, but probably not meant. Each has `code`, `where`, `message`
-        and `remedy`. Raises SpecError."""
+        """The lints of `mdlgen check`: inputs that are allowed, but probably not meant. Each has `code`,
+        `where`, `message` and `remedy`. Raises SpecError."""
         from mdlgen.checks import lints
         from mdlgen.model.lower import lower
 
@@ -264,7 +264,7 @@ class Scene(Strict):
         return self._source.folder
 
     def _document(self) -> Document:
-        """What the scene was read from, or made of in Python, to be changed."""
+        """A copy of the data that the scene was read from, or made of in Python, for changes."""
         assert self._source.document is not None, "set as the scene is validated"
         return self._source.document.copy()
 

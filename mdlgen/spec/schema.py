@@ -60,9 +60,9 @@ def json_schema() -> dict[str, Any]:
 
 
 def _unless_default(schema: dict[str, Any], kind: str, model: str) -> dict[str, Any]:
-    """Takes from a model what it requires, which `defaults` may give, and requires it where there are none.
+    """Removes the required keys of a model, which `defaults` may give, and requires them without defaults.
 
-    Beside `nips` nothing is required: an entry may be a part of what a nip makes, `entry_lower: {mass: 2 g}`.
+    With `nips` no key is required: an entry may be a part of what a nip makes, `entry_lower: {mass: 2 g}`.
     """
     part = schema["$defs"][model]
     given = {"between", "center"}  # of each one alone
@@ -122,8 +122,8 @@ def example(model: type[BaseModel], key: str) -> str:
 
 @cache
 def bounds(path: tuple[str | int, ...], key: str) -> tuple[float, float]:
-    """What a plain number of the mapping at a path may be, from its JSON schema; infinite where that does not
-    say."""
+    """Bounds of a plain number of the mapping at a path, from its JSON schema; infinite where the schema has
+    none."""
     model = model_at(path)
     schema = model.model_json_schema(schema_generator=_Schema) if model else {}
     own = schema.get("properties", {}).get(key, {})

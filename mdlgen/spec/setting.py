@@ -142,7 +142,7 @@ def _put(document: Document, path: SpecPath, value: Document, here: Place) -> No
         if last not in node:
             document.new_parameters.append(str(last))
         elif isinstance(node[last], dict) and not isinstance(value.data, dict):
-            # of one with the range of its slider the value alone
+            # a parameter with the range of its slider: only its value changes
             return _put(document, (*path, "value"), value, here)
     if isinstance(node, dict):
         for other in others(last, path[-2] if len(path) > 1 else None):

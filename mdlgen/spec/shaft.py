@@ -18,7 +18,7 @@ if TYPE_CHECKING:
 
 
 class Shaft(Strict):
-    """Several rollers that one shaft turns. What slows one of them loads the others."""
+    """Several rollers that one shaft turns. A torque that slows one of them loads the others."""
 
     rollers: dict[Name, Annotated[float, ratio(-1000.0, 1000.0)]] = Field(
         description="its rollers, each with its turns about its own axis for one turn of the shaft; below 0 "
@@ -54,7 +54,7 @@ class Shaft(Strict):
 
     @property
     def prescribed(self) -> bool:
-        """Whether its speed is given, whatever torque that takes."""
+        """True if its speed is prescribed, whatever torque that takes."""
         return self.drive is not None and self.drive.motor is None
 
 

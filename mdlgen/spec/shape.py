@@ -77,7 +77,7 @@ class DogEar(Strict):
         return self
 
     def beyond(self, x: float, y: float, half: tuple[float, float]) -> bool:
-        """Whether a point is on the corner's side of the crease; `half`: of the outline."""
+        """True if a point is on the corner's side of the crease; `half`: of the outline."""
         from_x = half[0] + x if self.corner[0] == "x_min" else half[0] - x
         from_y = half[1] + y if self.corner[1] == "y_min" else half[1] - y
         return from_x / self.size[0] + from_y / self.size[1] < 1.0

@@ -287,7 +287,7 @@ class Sheet(Strict):
         return x, y
 
     def _held(self, at: float) -> bool:
-        """Whether a coordinate along the clamp's direction lies behind the clamp line, or on it."""
+        """True if a coordinate along the clamp's direction lies behind the clamp line, or on it."""
         assert self.clamp is not None
         lines, row = self.lines["xy".index(self.clamp.edge[0])], self.clamped_rows()
         slack = 1e-6 * self.pitch[0]

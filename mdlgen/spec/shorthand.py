@@ -1,5 +1,4 @@
-"""What a scene says once, or by name, written out: rows of parts, nips, piles, streams, contacts by name,
-defaults."""
+"""Expands the shorthand of a scene: rows of parts, nips, piles, streams, contacts by name, and defaults."""
 
 from __future__ import annotations
 
@@ -16,7 +15,7 @@ from mdlgen.spec.rows import expanded
 from mdlgen.spec.strict import Strict, fail
 
 Path = tuple[str | int, ...]
-# Of two words for one value a part's own counts, not the default's other one.
+# Two keys for one value: the part's own key counts, and the other one in `defaults` does not.
 _WORDS = ({"radius", "diameter"},)
 _MOST_STEPS = 8  # from what is made to the text: a contact, of a nip, of a row, of the defaults
 OF_CONTACTS = tuple(name for name in Contact.model_fields if name not in ("between", "name"))
@@ -59,8 +58,8 @@ class Defaults(Strict):
 
 
 def written_out(data: Any, origins: dict[Path, Path]) -> Any:
-    """Plain data of a scene with its shorthand written out; `origins` gets where values that were moved or
-    copied stand in the text. What is not of the right form is left for validation."""
+    """Plain data of a scene with its shorthand written out; `origins` gets the places in the text of values
+    that were moved or copied. Data of a wrong form are left for validation."""
     if not isinstance(data, dict):
         return data
     data = expanded(data, origins)

@@ -18,7 +18,7 @@ _MOST_CHARACTERS = 500  # of a formula: a longer one is a number in a text
 
 
 class Speeds(NamedTuple):
-    """Of one contact [mm/ms]."""
+    """Smoothing speeds of one contact [mm/ms]."""
 
     smoothing: float
     stiction: float

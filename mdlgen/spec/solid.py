@@ -1,10 +1,11 @@
 """Solids from files, checked as they are read.
 
-A file is refused before it is read where it is too large or no plain file, before it is taken apart where it
-does not have the size that its header claims or has more triangles than are allowed; then where a number is
-not finite, a triangle has no neighbour on a side (the surface is not watertight) or is turned against it, and
-where the size is not that of a part of a paper machine, the sign of a wrong unit. Corners that are exactly
-the same are one, those of no triangle are left out, and so are triangles with two corners in one place.
+A file that is too large, or no plain file, is refused before it is read. One whose size differs from that in
+its header, or that has more triangles than are allowed, is refused before it is parsed. Then these are
+refused: numbers that are not finite, and triangles without a neighbour on a side (the surface is not
+watertight) or with reversed orientation. Also refused is a size that no part of a paper machine has: it is
+the sign of a wrong unit. Corners that are exactly equal are merged. Corners without a triangle, and triangles
+with two corners in one place, are left out.
 """
 
 from __future__ import annotations
@@ -47,8 +48,8 @@ class Solid:
 
 
 def read_solid(name: Any, folder: Any, unit: str, tally: Tally) -> Solid:
-    """The solid in a file beside the spec or below, counted in `tally`. Raises the error that says what is
-    wrong with it."""
+    """The solid in a file in the folder of the spec or below, counted in `tally`. Raises an error that names
+    the fault."""
     raw = _bytes(name, folder, tally)
     found = solid(raw, name, unit, tally)
     tally.add("triangles", len(found.triangles) + found.flat)
@@ -93,8 +94,9 @@ def signed_volume(corners: Floats, triangles: Ints) -> float:
 def moments(corners: Floats, triangles: Ints) -> tuple[float, Floats, Floats]:
     """Volume, its middle (3,), and the mean of r r^T over it about the middle (3, 3), of a closed surface.
 
-    Sums over the tetrahedra of each triangle and the first corner: of one with corners 0, a, b, c and volume
-    V the integral of r is V s/4, s = a + b + c, that of r r^T is V/20 (s s^T + a a^T + b b^T + c c^T).
+    Sums over the tetrahedra of each triangle and the first corner. A tetrahedron with corners 0, a, b, c and
+    volume V has the integral of r of V s/4, s = a + b + c; that of r r^T is
+    V/20 (s s^T + a a^T + b b^T + c c^T).
     """
     base = corners[triangles[0, 0]]
     a, b, c = (corners[triangles[:, k]] - base for k in range(3))

@@ -104,7 +104,7 @@ def names_of(name: str, stream: Any) -> list[str]:
 
 def written(data: dict[str, Any], origins: dict[Path, Path]) -> None:
     """Puts the sheets of streams in the place of those that they are of, and names them in contacts where
-    these name the stream. What is not of the right form is left for validation."""
+    these name the stream. Data of a wrong form are left for validation."""
     streams, sheets = data.get("streams"), data.get("sheets")
     if not isinstance(streams, dict) or not isinstance(sheets, dict):
         return
@@ -137,7 +137,7 @@ def written(data: dict[str, Any], origins: dict[Path, Path]) -> None:
         data["contacts"] = [_contact(item, members, of) for item in data["contacts"]]
 
 
-# Which key of a stream a key of its sheets is said by.
+# Key of a stream that takes the place of a key of its sheets.
 _SAID = {"center": "at", "enters": "every", "turn": "skew", "rotation": "skew"}
 
 
@@ -157,7 +157,7 @@ def _contact(item: Any, members: dict[str, list[str]], of: dict[str, list[str]])
 
 
 def _meant(word: Any, members: dict[str, list[str]], of: dict[str, list[str]]) -> list[Any]:
-    """What a word of a contact stands for."""
+    """The names that a word of a contact stands for."""
     if not isinstance(word, str):
         return [word]
     return members.get(word) or of.get(word) or [word]
@@ -172,7 +172,7 @@ def _each(sheet: dict[str, Any], stream: dict[str, Any], count: int) -> Iterator
     key = "turn" if sheet.get("rotation") is None else "rotation"
     angles = sheet["rotation"] if key == "rotation" else ["0 deg", "0 deg", sheet.get("turn") or "0 deg"]
     for k in range(count):
-        # both are drawn for each, so that the one does not change with the other
+        # both are drawn for each sheet, so that neither depends on the range of the other
         later, swung = draw.uniform(-1.0, 1.0) * jitter, draw.uniform(-1.0, 1.0) * skew
         place: dict[str, Any] = {}
         if stream.get("by_rule") is True:

@@ -1,4 +1,4 @@
-"""What every model of the spec is built on, and the errors that its fields raise."""
+"""The base of every model of the spec, and the errors that its fields raise."""
 
 from __future__ import annotations
 

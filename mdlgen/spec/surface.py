@@ -1,4 +1,4 @@
-"""Which way a roller turns so that its surface moves as asked where it faces the sheet."""
+"""Finds the sense of rotation with which a roller's surface moves as asked where it faces the sheet."""
 
 from __future__ import annotations
 
@@ -83,7 +83,7 @@ def _sense(scene: Scene, name: str, pairs: list[tuple[int, str, str]]) -> float:
 
 
 def _allowed(name: str, way: Vector, along: float, by_speed: str) -> str:
-    """Which directions a surface may have that moves along `way`, the nearer one as the example."""
+    """The directions allowed for a surface that moves along `way`, the nearer one as the example."""
     length = math.hypot(*way)
     if length < 1e-9:
         return f"{name} faces the sheet with its end, where its surface moves no way; {by_speed}"
@@ -105,7 +105,7 @@ def _as_given(way: list[float]) -> str:
 
 
 def _to_sheet(sheet: Sheet, center: Vector, radius: float) -> Vector | None:
-    """From a roller's axis to the mid-plane of a sheet as it starts; None: it is not beside that plane."""
+    """From a roller's axis to the mid-plane of a sheet as it starts; None: it is not near that plane."""
     normal = sheet.normal
     height = _dot(_minus(sheet.center, center), normal)
     if not NEAR * radius < abs(height) < FAR * radius:

@@ -1,4 +1,4 @@
-"""What a scene of an older version must say today, written into its text: comments and form stay."""
+"""Upgrades a scene of an older version in its text: comments and form stay."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ FRICTION, SMOOTHING = ("friction", "0"), ("smoothing", "1 mm/s")
 
 
 class Change(NamedTuple):
-    """What is written, and where in the text before."""
+    """A text to write, and its place in the text before."""
 
     path: SpecPath
     place: Place

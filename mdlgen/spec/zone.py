@@ -48,7 +48,7 @@ class Zone(Strict):
         return self
 
     def meets(self, other: Zone) -> bool:
-        """Whether two zones share an area."""
+        """True if two zones share an area."""
         return all(
             max(mine[0], yours[0]) < min(mine[1], yours[1])
             for mine, yours in ((self.x, other.x), (self.y, other.y))

@@ -28,7 +28,7 @@ Count = Callable[[int, int], None]
 
 @dataclass(frozen=True)
 class Sweep:
-    """What is asked for: a task and its cases; `how` says how they were chosen."""
+    """The request of a sweep: a task and its cases; `how` says how they were chosen."""
 
     task: Task
     cases: tuple[Case, ...]
@@ -37,7 +37,7 @@ class Sweep:
     model: str  # digest of the first case that can be read
 
     def asked(self) -> Asked:
-        """What the journal says of it."""
+        """The request in the form of the journal."""
         from mdlgen import registry
         from mdlgen.runs.provenance import provenance
 
@@ -99,7 +99,7 @@ def sweep(
 
 
 def first_model(task: Task, cases: Sequence[Case]) -> Model:
-    """Of the first case that can be read. Raises the error of the first where none of a hundred can."""
+    """The Model of the first case that can be read. Raises the first error where none of a hundred can."""
     first: MdlgenError | None = None
     stride = max(1, len(cases) // LOOKED_AT)
     for case in cases[::stride][:LOOKED_AT]:
@@ -115,8 +115,8 @@ def opened(folder: Path, wanted: Sweep | None, resume: bool) -> tuple[Sweep, Jou
     """A sweep and its journal in `folder`: a new one, or with `resume` the one that is there, as it was asked
     for (`wanted` is what is asked for now, None: the same).
 
-    Raises OutputError, and RefusedError by name where another sweep is there, or where it would not go on to
-    the same bits.
+    Raises OutputError, and RefusedError by name where another sweep is there, or where it would not resume
+    with bitwise identical results.
     """
     from mdlgen.runs.provenance import digest
 

@@ -1,1 +1,1 @@
-"""Whether a text, its script and its deck say what the Model says that the solvers run."""
+"""Verifies that an MDL file, its script and its deck state the Model that the solvers run."""

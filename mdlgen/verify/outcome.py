@@ -1,4 +1,4 @@
-"""What a verification found."""
+"""The findings of a verification."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from mdlgen.verify.tables import Compared, Difference
 
 @dataclass
 class Perturbed:
-    """What came of changing each value, in the text and in the spec."""
+    """The outcome of changing each value, in the MDL file and in the spec."""
 
     values: int = 0
     largest: float = 0.0
@@ -20,7 +20,8 @@ class Perturbed:
 
 @dataclass
 class Verification:
-    """What was compared: kinds by source (`text`, `deck`), what differs, and what came of changing values."""
+    """The findings: compared kinds by source (`text`, `deck`), differences, and outcomes of changed
+    values."""
 
     kinds: dict[str, dict[str, Compared]] = field(default_factory=dict)
     differences: list[Difference] = field(default_factory=list)
@@ -33,7 +34,7 @@ class Verification:
         return not self.all_differences()
 
     def all_differences(self) -> list[Difference]:
-        """Of the values as they are, then of those perturbed."""
+        """Differences of the values as they are, then of those perturbed."""
         return [*self.differences, *(self.perturbed.differences if self.perturbed else [])]
 
     def add(self, source: str, compared: Compared, within: str = "") -> None:

@@ -1,8 +1,8 @@
 """Solver expressions, evaluated: laws of drives and clutches over time, and outputs in a made-up state.
 
-An output is a formula of markers. Whether it reads the right ones is seen by numbers: each body gets a
-displacement, a velocity and a spin of its own, made from its name, and the formula must give what these
-make of the material point that the Model has for the probe.
+An output is a formula of markers. Numbers show if it reads the right ones: each body gets a displacement, a
+velocity and a spin of its own, made from its name. The formula must then yield their values at the material
+point that the Model has for the probe.
 """
 
 from __future__ import annotations

@@ -64,7 +64,7 @@ def verify(
     """Compares text, script and deck with the Model of a scene, and the script for MotionSolve, `msolve`.
 
     Without `text` the texts that mdlgen writes are taken: with the contact numbers in solver commands, in the
-    script, and in statements of the text. `companion` is looked for beside `text` where it is left out.
+    script, and in statements of the text. Without `companion` it is searched in the folder of `text`.
     `only="sheets"` is for the sheets alone, in a host model or by themselves; so is a scene with external
     parts. `perturb` also changes each value of the data sets.
 
@@ -123,7 +123,7 @@ def _passes(
 
 
 def _of_script(script: Script, reads: list[Read]) -> str | None:
-    """What to change where the script gives the numbers: after the commands only what its numbers follow."""
+    """The values to perturb where the script gives the numbers: after the commands only those it follows."""
     if not reads[0].commanded:
         return ""
     return f"ds_{OF_USER}." if script.follows else None
@@ -140,7 +140,7 @@ def _lint(subject: Subject, read: Read, found: Verification) -> None:
 def _given(
     subject: Subject, text: Path, companion: Path | None, reads: list[Read], found: Verification
 ) -> Script:
-    """What a given text has that no value shows, its wording, and its script."""
+    """Compares the wording of a given MDL file and its content without values; returns its script."""
     one = reads[0]
     mine = subject.script(one.has_numbers)
     our = subject.own(one.has_numbers, like=one)

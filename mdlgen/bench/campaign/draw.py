@@ -92,7 +92,7 @@ class Draw:
         return self.of(-1, 1)
 
     def value(self, name: str, low: float | None = None, high: float | None = None) -> float:
-        """Of a quantity of RANGES, in its unit; `low` and `high` narrow its range."""
+        """A random value of a quantity of RANGES, in its unit; `low` and `high` narrow its range."""
         allowed = RANGES[name]
         least = allowed.low if low is None else max(low, allowed.low)
         most = allowed.high if high is None else max(least, min(high, allowed.high))

@@ -15,8 +15,8 @@ class Finer:
     """Errors of a run relative to their estimates, from a run at an eighth of its step. Where one is above
     ABOVE, a run at a sixteenth checks the eighth."""
 
-    compared: int = 0  # that have an estimate
-    unknown: int = 0  # that have none
+    compared: int = 0  # number of quantities with an estimate
+    unknown: int = 0  # number of quantities without one
     above: tuple[tuple[str, float], ...] = ()  # name, error over estimate, of those above ABOVE
     apart: tuple[str, ...] = ()  # those of `above` on which the two finer runs do not agree
     failed: str = ""  # why there is no finer run

@@ -13,7 +13,7 @@ LAYOUTS = ("edge_to_edge", "edge_to_edge", "center_to_center", "plate")
 
 @dataclass(frozen=True)
 class Stock:
-    """What a sheet may be made of; each pair is a lowest and a highest value."""
+    """Material ranges of a sheet; each pair is a lowest and a highest value."""
 
     thickness: tuple[float, float]  # [mm]
     density: tuple[float, float]  # [g/cm^3]

@@ -20,8 +20,8 @@ from mdlgen.bench.campaign.task import FINER, Begun, Task
 from mdlgen.bench.process import STARTING, THREADS
 from mdlgen.errors import OutputError
 
-# Limit of wall time relative to that of processor time. It ends a process that waits forever, and leaves room
-# for other programs. Where the system cannot limit processor time, wall time is the limit.
+# Limit of wall time relative to that of processor time. It ends a process that waits forever, and allows for
+# other programs. Where the system cannot limit processor time, wall time is the limit.
 WALL = 5.0 if hasattr(signal, "SIGXCPU") else 1.0
 # Preparing a solver may compile it, which takes minutes [s].
 COMPILING = 1800.0
@@ -66,7 +66,7 @@ class _Process:
 
     @property
     def exceeded(self) -> bool:
-        """Whether the system ended it at its limit of processor time."""
+        """True if the system ended it at its limit of processor time."""
         return hasattr(signal, "SIGXCPU") and self.process.returncode == -signal.SIGXCPU
 
     def ended(self) -> str:

@@ -106,7 +106,7 @@ def surface(ring: Ring) -> Surface:
 
 
 def _stiffness(ring: Ring, corners: Floats) -> Floats:
-    """Of each element, whose nodes have the places `corners` (m, 4, 2), (m, 8, 8)."""
+    """Stiffness of each element, whose nodes have the places `corners` (m, 4, 2), (m, 8, 8)."""
     e, nu = ring.modulus, ring.poisson
     shear, bulk = e / (2 * (1 + nu)), e / (3 * (1 - 2 * nu))
     away = shear * np.array([[4 / 3, -2 / 3, 0], [-2 / 3, 4 / 3, 0], [0, 0, 1]])  # of a change of shape
@@ -162,7 +162,7 @@ def nip(ring: Ring, other: float, depth: float) -> Nip:
 
 
 def _edge(angle: Floats, force: Floats) -> float:
-    """Where the pressure ends [rad]: half a node beyond the last one with a force."""
+    """Angle at which the pressure ends [rad]: half a node beyond the last node with a force."""
     last = int(np.flatnonzero(force > 0.0)[-1])
     return float(0.5 * (angle[last] + angle[last + 1]))
 

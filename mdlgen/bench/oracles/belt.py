@@ -29,7 +29,7 @@ def web(
     """Strain of a web between two nips at `speed` and `speed` (1 + `draw`), free of it at the start and
     before the first; `stiffness` is force over strain, `most` what a nip may bear.
 
-    What is between the nips is kept: d/dt L/(1 + e) = v1 - v2/(1 + e).
+    The material between the nips is conserved: d/dt L/(1 + e) = v1 - v2/(1 + e).
     """
     from scipy.integrate import solve_ivp
 

@@ -140,7 +140,7 @@ def hang(chain: Chain) -> Floats:
 
 
 def swing(chain: Chain, times: Floats, post: Post | None = None) -> Floats:
-    """Slopes at `times` [ms] of the chain let go flat and at rest, (t, n); integrated to 1e-9, round a post
+    """Slopes at `times` [ms] of the chain released flat and at rest, (t, n); integrated to 1e-9, round a post
     to 1e-6."""
     from scipy.integrate import solve_ivp
 

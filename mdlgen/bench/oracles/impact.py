@@ -15,7 +15,7 @@ import numpy as np
 
 @dataclass(frozen=True)
 class Impact:
-    """What an impact leaves, in the units of m, k and v0."""
+    """The state after an impact, in the units of m, k and v0."""
 
     restitution: float
     time: float  # in contact

@@ -67,7 +67,7 @@ def _shapes() -> tuple[list[Polynomial], list[Polynomial]]:
 
 
 def _stiffness(length: float, width: float, stiffness: tuple[float, float, float, float]) -> np.ndarray:
-    """Of the products of polynomials along and across."""
+    """Stiffness matrix for products of polynomials along and across."""
     d_x, d_y, d_1, d_66 = stiffness
     x, weight_x = np.polynomial.legendre.leggauss(2 * ALONG)
     y, weight_y = np.polynomial.legendre.leggauss(2 * ACROSS)

@@ -10,7 +10,7 @@ from mdlgen.model.tables import Floats
 
 
 def pendulum(time: float, length: float, gravity: float, start: float = 0.5 * math.pi) -> float:
-    """Angle [rad] from the lowest point at `time` of a pendulum of equivalent length let go at `start`.
+    """Angle [rad] from the lowest point at `time` of a pendulum of equivalent length released at `start`.
 
     sin(angle/2) = k cd(w t, k), k = sin(start/2), w = sqrt(g / l): Jacobi's functions.
     """
@@ -45,6 +45,6 @@ def tumble(inertia: Floats, spin: Floats, times: Floats) -> Floats:
 
 
 def slid_apart(speed: float, mu: float, gravity: float, top: float, bottom: float) -> tuple[float, float]:
-    """(way of the one over the other, common speed at the end) of a block that is thrown along another one,
-    which lies on ice: v^2 / (2 mu g (1 + m/M)), v m/(m + M)."""
+    """(relative displacement, common speed at the end) of a block thrown along another one that lies on ice:
+    v^2 / (2 mu g (1 + m/M)), v m/(m + M)."""
     return speed**2 / (2 * mu * gravity * (1 + top / bottom)), speed * top / (top + bottom)

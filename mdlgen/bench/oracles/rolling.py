@@ -1,9 +1,10 @@
 """A sheet in a nip with a rubber cover that rolls steadily, with Coulomb friction on all of the contact.
 
-The sheet does not stretch. Of each node of the surface of a ring of finite elements (annulus.py) the interval
-before it, upstream, sticks to the sheet, where its stretch is the gain of the speed, or slips against a
-friction mu p. That is the scheme of Kalker (Three-Dimensional Elastic Bodies in Rolling Contact, 1990): what
-comes in is free, so the friction begins without a jump at the leading edge. The pull on the sheet is 0.
+The sheet does not stretch. The surface is a ring of finite elements (annulus.py). The interval before each
+node, upstream, either sticks to the sheet, with a stretch equal to the gain of the speed, or slips against a
+friction mu p. That is the scheme of Kalker (Three-Dimensional Elastic Bodies in Rolling Contact, 1990).
+Incoming material is free, so the friction begins without a jump at the leading edge. The pull on the sheet is
+0.
 """
 
 from __future__ import annotations

@@ -14,7 +14,7 @@ from mdlgen.bench.case import Run
 PEERS = {"mujoco": "mdlgen.bench.peers.mujoco_flex", "exudyn-script": "mdlgen.bench.peers.exudyn_script"}
 # Steps [ms] at which each is run.
 STEPS = {"mujoco": (0.25, 0.125, 0.05, 0.025), "exudyn-script": (0.1, 0.05)}
-# Which sheet each has; the case's name.
+# Sheet of each peer; the case's name.
 SHEETS = {"mujoco": "isotropic flex of 11 x 21 nodes", "exudyn-script": "10 x 20 boxes, by hand"}
 MISSING = (
     "MuJoCo is not installed: pip install 'mdlgen[peers]' puts it and an Exudyn script beside our solvers"
@@ -22,12 +22,12 @@ MISSING = (
 
 
 def installed() -> bool:
-    """Whether the extra `peers` is there."""
+    """True if the extra `peers` is installed."""
     return find_spec("mujoco") is not None
 
 
 def versions() -> dict[str, str]:
-    """Of MuJoCo, where it is installed; Exudyn's is among ours."""
+    """Version of MuJoCo, where it is installed; Exudyn's is among ours."""
     return {"mujoco": metadata.version("mujoco")} if installed() else {}
 
 

@@ -209,7 +209,7 @@ def _words(numbers: Any) -> str:
 
 
 def _speed(roller: RollerPart, at: float) -> float:
-    """Of a driven roller [rad/ms]: a linear ramp."""
+    """Speed of a driven roller [rad/ms]: a linear ramp."""
     return (roller.speed or 0.0) * min(1.0, at / roller.ramp if roller.ramp else 1.0)
 
 

@@ -1,4 +1,4 @@
-"""What the peers share: which scenes they take, where rollers stand on the sheet, and what they return."""
+"""Shared code of the peers: the scenes they run, where rollers stand on the sheet, and what they return."""
 
 from __future__ import annotations
 
@@ -71,7 +71,7 @@ def lanes(model: Model, roller: RollerPart) -> list[Lane]:
 
 @dataclass(frozen=True)
 class Motion:
-    """What a peer ran: the box centres at the stored times [ms], (t,) and [mm], (t, boxes, 3)."""
+    """The run of a peer: the box centres at the stored times [ms], (t,) and [mm], (t, boxes, 3)."""
 
     time: Floats
     position: Floats

@@ -1,4 +1,4 @@
-"""What judges a change of the solver's core: machines, sheets on sheets, a fall, and scenes of a campaign.
+"""Cases that judge a change of the solver's core: machines, sheets on sheets, a fall, and campaign scenes.
 
 Each runs as a user runs it, at its own step or the one that the solver chooses.
 """
@@ -87,7 +87,7 @@ def balance(result: Result, _: Result | None) -> list[Finding]:
 
 
 def _work(result: Result) -> dict[str, float]:
-    """What the last pass took, and a number that differs where the state at its end does."""
+    """The work of the last pass, and a number that differs where the state at its end does."""
     run = result.model.run
     planned = run.duration / result.step if result.step else 0.0
     state = np.concatenate([result.position[-1].ravel(), result.velocity[-1].ravel()])

@@ -14,7 +14,7 @@ from mdlgen.results.result import Result
 from mdlgen.results.summary import summary
 
 SAMPLE, NOTE = "feeder_one", "note_1"
-# The note stands at the rejection roller from the one time, and the rubber comes after the other.
+# Time from which the note stands at the rejection roller, and time at which the rubber comes.
 STANDS, RUBBER = 40.0, 200.0  # [ms]
 STAYS = 0.2  # mm that the note may creep in between
 PIECE = 60.0  # [ms] that Exudyn runs

@@ -1,4 +1,4 @@
-"""What each rule saves that leaves out what a scene does not need: all of them against all but one."""
+"""Savings by each rule that leaves out unneeded parts of a scene: all of them against all but one."""
 
 from __future__ import annotations
 
@@ -41,7 +41,8 @@ def near(result: Result, reference: Result | None) -> list[Finding]:
     return [_difference(result, reference, NEAR)]
 
 
-# What a solver does by itself and can do without: its name there, what it is, what a run without it gives.
+# Rules of a solver that it can also do without: name in the solver, description, and measure of the
+# difference.
 OWN: dict[str, tuple[tuple[str, str, Measure], ...]] = {
     FAST: (
         ("folding", "folded bushings", unchanged),
@@ -71,7 +72,7 @@ def cases(solver: str, reference: str, quick: bool) -> list[BenchCase]:
 
 
 def _difference(result: Result, reference: Result | None, tolerance: float) -> Finding:
-    """Of the first sheet's positions to the run with every rule: a spare sheet is in one of them only."""
+    """Difference of the first sheet's positions to the run with every rule: only one has a spare sheet."""
     assert reference is not None, "the cases of skip have one"
     boxes = slice(0, result.model.sheets[0].count)
     apart = np.linalg.norm(result.position[:, boxes] - reference.position[:, boxes], axis=2)

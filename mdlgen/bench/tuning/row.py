@@ -1,4 +1,4 @@
-"""What the bench of the numbers found: a row for each number and factor, an outcome for each scene."""
+"""Results of the bench of the numbers: a row for each number and factor, an outcome for each scene."""
 
 from __future__ import annotations
 

@@ -65,7 +65,7 @@ def _rows(found: Tuning) -> int:
 
 
 def _messages() -> Iterator[Reference | TuningRow]:
-    """What the worker sends. Raises OutputError where it ends early."""
+    """The messages of the worker. Raises OutputError where it ends early."""
     with tempfile.TemporaryFile() as log:
         process = subprocess.Popen(
             [sys.executable, "-P", "-m", "mdlgen.bench.tuning.worker"],

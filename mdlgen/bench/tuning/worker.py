@@ -32,7 +32,7 @@ WALL = 20.0
 
 
 class Found(NamedTuple):
-    """What is compared of a run."""
+    """The parts of a run that are compared."""
 
     status: str
     ended: bool
@@ -43,7 +43,7 @@ class Found(NamedTuple):
 
 
 def found(result: Result, cpu: float) -> Found:
-    """What is compared of a result."""
+    """The parts of a result that are compared."""
     states = (result.time, result.position, result.rotation, result.velocity, result.spin)
     return Found(result.status, result.usable, result.steps, result.iterations or 0, states, cpu)
 
@@ -74,8 +74,8 @@ Work = tuple[Callable[[], Found], float]  # what runs, and its limit of processo
 
 
 def apart(works: Sequence[Work]) -> list[Found | str]:
-    """What each of `works` returns in a copy of this process, or why it returns nothing. A copy that ends
-    early is followed by another one for what is left."""
+    """The results of `works`, each in a copy of this process, or the reason of a failure. If a copy ends
+    early, another one does the remaining work."""
     answers: list[Found | str] = []
     while len(answers) < len(works):
         left = works[len(answers) :]

@@ -1,4 +1,4 @@
-"""What holds on to a sheet: probes, supports, loads, and the pull of a tension test."""
+"""Anchors of a sheet: probes, supports, loads, and the pull of a tension test."""
 
 from __future__ import annotations
 

@@ -19,8 +19,8 @@ class Cells:
     d_y: Floats
     s: Floats  # thickness
     m: Floats  # mass (Eq. 2)
-    stiff: Floats  # moduli in times those of the sheet
-    friction: Floats  # friction in times that of the contact
+    stiff: Floats  # moduli relative to those of the sheet
+    friction: Floats  # friction relative to that of the contact
     plain: float  # thickness of the sheet outside its zones
 
     @property
@@ -31,12 +31,12 @@ class Cells:
 
     @property
     def membrane(self) -> Floats:
-        """Membrane stiffness in times that of the sheet outside its zones."""
+        """Membrane stiffness relative to that of the sheet outside its zones."""
         return self.stiff * (self.s / self.plain)
 
     @property
     def bending(self) -> Floats:
-        """Bending stiffness in times that of the sheet outside its zones."""
+        """Bending stiffness relative to that of the sheet outside its zones."""
         return self.stiff * (self.s / self.plain) ** 3
 
 

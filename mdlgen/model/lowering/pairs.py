@@ -1,12 +1,13 @@
-"""Which contacts a scene can need: box-part pairs that may touch during the run.
+"""Finds the contacts that a scene can need: pairs of a box and a part that may touch during the run.
 
-A sheet's boxes are swept by what can move them: their initial velocity, gravity, and the surface speed
-of every driven roller that the sheet has a contact with, or a sheet that it has one with; such a sheet may
-also pass on its velocity. A difference of those speeds across the sheet may turn it. A stated margin is
-added. A solver watches the bounds: a box whose centre leaves them ends the run, so that no contact is missed
-silently. A sheet that meets an external part may be moved by it in any way: all of its pairs are kept. A
-sheet that meets a guide or a fixed mesh, itself or over such a sheet, may be led by it in any direction, as
-far as all that moves it goes. One that meets a pressed plate may be carried by it as far as that goes.
+A sheet's boxes are swept by what can move them. That is their initial velocity, gravity, the surface speed of
+every driven roller that touches the sheet, and the speed of a sheet that touches it. A touching sheet may
+also pass on its velocity. Different speeds across the sheet may turn it. A stated margin is added.
+
+A solver watches the bounds: a box whose centre leaves them ends the run, so that no contact is missed
+silently. A sheet that meets an external part may be moved by it in any way: all of its pairs are stored. A
+sheet that meets a guide or a fixed mesh, itself or over such a sheet, may be led in any direction, as far as
+the parts that move it go. One that meets a pressed plate may be carried by it as far as the plate goes.
 """
 
 from __future__ import annotations
@@ -130,14 +131,14 @@ def find_pairs(
 
 
 class _Drives(NamedTuple):
-    """What driven rollers may do to a sheet."""
+    """Motions that driven rollers may give a sheet."""
 
     ends: list[Floats]  # how far the way of each goes either way along each axis [mm], (3,)
     twist: float  # angle by which their differences may turn it in its plane [rad]
 
 
 def _drives(touched: list[tuple[SheetPart, MachinePart]], run: RunSettings) -> _Drives:
-    """Of the driven rollers among the parts that a sheet, or one that it is linked with, touches."""
+    """Motions by the driven rollers among the parts that a sheet, or a sheet linked with it, touches."""
     if run.analysis == "static":
         return _Drives([], 0.0)
     driven = [

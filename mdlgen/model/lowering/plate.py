@@ -15,8 +15,8 @@ Half of the twist's energy is in the joints along x, half in those along y. Over
 at a free edge only the joints along that edge are left: there they have the whole of it. So in twist a joint
 in the row or column at a free edge stands for half a box more, 3/2 of its width; one of a strip of one box
 for both halves, twice its width. At a clamped edge half-cell hinges are over the first half of the boxes.
-What is left is of second order: a plate with loads at its true corners is too stiff by 1/(n_x n_y), since the
-boxes there do not twist themselves.
+The remaining error is of second order: a plate with loads at its true corners is too stiff by 1/(n_x n_y),
+since the boxes there do not twist themselves.
 
 In the plane nothing is added: shear falls to zero at a free edge. Where a load puts shear on the edges, the
 part (1/n_x + 1/n_y)/2 of the compliance is missing.

@@ -1,18 +1,18 @@
-"""Poisson's effect of `layout: plate`: what couples joints along x with joints along y.
+"""Poisson's effect of `layout: plate`: the coupling of joints along x with joints along y.
 
-Moduli and bending stiffness that a user gives are those of strips, which are free across. Where the sheet is
-not, the plate has E/(1 - nu_md nu_cd) and D/(1 - nu_md nu_cd), and the energy of an area is
+Moduli and bending stiffness that a user gives are those of strips, which are free across. A sheet that is not
+free across has E/(1 - nu_md nu_cd) and D/(1 - nu_md nu_cd), and the energy of an area is
 
     1/2 D_x kx^2 + D_12 kx ky + 1/2 D_y ky^2    with D_12 = nu_md D_y = nu_cd D_x of the plate,
 
 and the same of strains with E s. An area is a quarter of a box: one joint along x and one along y have its
 curvatures. Quarters that both a joint along x and one along y reach, around a corner of four boxes or at a
-clamp, are coupled. At a free edge nothing bends the outer half of a box across that edge: it is left a strip,
-which is what a plate without moment across is. So a state of uniform moment, or of uniform tension, is exact
-where the edges along it are free; each quarter has a positive energy for any state, as the material has.
+clamp, are coupled. At a free edge nothing bends the outer half of a box across that edge. It is modelled as a
+strip, which is a plate without moment across. So a state of uniform moment, or of uniform tension, is exact
+where the edges along it are free. Each quarter has a positive energy for any state, as the material has.
 
-Dampers are those of the strip in the same way: both coefficients grow alike, and the coupling has the mean of
-both joints' damping times, the geometric one, with which no motion gains energy.
+Dampers are scaled from those of the strip in the same way. The coupling has the geometric mean of both
+joints' damping times, with which no motion gains energy.
 """
 
 from __future__ import annotations

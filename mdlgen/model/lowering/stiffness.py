@@ -1,7 +1,7 @@
-"""Joint stiffness and damping of a sheet: the paper's Eqs. 4-7, and what follows from plate stiffness.
+"""Joint stiffness and damping of a sheet: the paper's Eqs. 4-7, and values derived from plate stiffness.
 
-Each joint has a length and a width of its own, the mean of the boxes that it joins along it and the side
-that they share, and two halves in series, one in each box. Where all boxes are alike that is the paper's
+Each joint has a length and a width of its own. Along it that is the mean of the two boxes, across it the side
+that they share. It consists of two halves in series, one in each box. For equal boxes that is the paper's
 formula with d_x and d_y. Units: mm, N, g, ms, rad.
 """
 
@@ -24,13 +24,13 @@ COMPONENTS: tuple[str, ...] = ("x", "y", "z", "tx", "ty", "tz")
 
 @dataclass(frozen=True)
 class Between:
-    """What joints lie between, one row each; a half-cell hinge has the one box that it holds twice."""
+    """Boxes that joints connect, one row each; a half-cell hinge has the one box that it holds twice."""
 
     d_x: Floats  # [mm]
     d_y: Floats
     s: Floats
     m: Floats  # [g]
-    membrane: Floats  # stiffness in times that of the sheet outside its zones
+    membrane: Floats  # stiffness relative to that of the sheet outside its zones
     bending: Floats
     crease: Floats  # stiffness of a crease per length [N mm/rad per mm], inf: none
 
@@ -57,8 +57,8 @@ def between(boxes: Cells, one: Ints, two: Ints, along_x: bool, soft: Floats, cre
 
 
 def extent(sheet: Sheet, of: Between, along_x: bool) -> tuple[Floats, Floats]:
-    """Length [mm] of each joint along x, or along y, and section [mm^2] of one of its bushings, in zones in
-    times their membrane stiffness."""
+    """Length [mm] of each joint along x, or along y, and section [mm^2] of one of its bushings. In zones the
+    section is scaled by their membrane stiffness."""
     parts = 2 if sheet.layout == "edge_to_edge" else 1
     long, wide = (of.d_x, of.d_y) if along_x else (of.d_y, of.d_x)
     return long, of.membrane * (wide * sheet.thickness / parts)
@@ -110,10 +110,11 @@ def damping_times(times: tuple[float, float], sheared: bool, twisted: bool, alon
     """Damping time of each of the six components of joints along x, or along y [ms], (6,).
 
     Kelvin and Voigt's modulus at the frequency w is E (1 + i w tau), so each component has the time of the
-    modulus that its stiffness follows from. What goes with the root of both moduli, as shear and twist do
-    (`plate.SHEAR_RATIO`), then has sqrt((1 + i w tau_md) (1 + i w tau_cd)) = 1 + i w (tau_md + tau_cd)/2 to
-    first order, the mean of both; k_z and a k_tz of no direction take it, too. `sheared`: joints have a shear
-    stiffness of their own, and bend in the plane as the strip does; `twisted`: a twisting stiffness.
+    modulus that its stiffness follows from. Shear and twist follow from the root of both moduli
+    (`plate.SHEAR_RATIO`). They have sqrt((1 + i w tau_md) (1 + i w tau_cd)) = 1 + i w (tau_md + tau_cd)/2 to
+    first order, the mean of both times. k_z and a k_tz without a direction have the mean, too. `sheared`:
+    joints have a shear stiffness of their own, and bend in the plane as the strip does; `twisted`: a twisting
+    stiffness.
     """
     md, cd = times
     mean = 0.5 * (md + cd)

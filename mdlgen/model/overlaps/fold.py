@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from mdlgen.model.tables import Floats, Ints, Model, SheetPart
 
-# Of the thinner of two boxes: how deep they may be in each other; less is the round-off of a closed loop.
+# Greatest depth of two boxes in each other, relative to the thinner one; less is round-off of a closed loop.
 DEEP = 0.5
 
 
@@ -89,7 +89,7 @@ def _beside(half: Floats) -> float:
 def overlaps(gap: Floats, one: Floats, two: Floats, half_one: Floats, half_two: Floats) -> Floats:
     """How far blocks overlap, by the shortest way out, below zero where they are apart; (n,).
 
-    gap: from the centre of the one to that of the other (n, 3); axes in columns (n, 3, 3); half lengths.
+    gap: from the centre of block `one` to that of `two` (n, 3); axes in columns (n, 3, 3); half lengths.
     """
     ways = [one[:, :, i] for i in range(3)] + [two[:, :, i] for i in range(3)]
     ways += [np.cross(one[:, :, i], two[:, :, k]) for i in range(3) for k in range(3)]

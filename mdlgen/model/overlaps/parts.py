@@ -1,10 +1,10 @@
 """Rollers and the plates, guides and meshes that they have no contact with: whether they come to overlap.
 
-What overlaps where it is given stands in a hole that is not modelled, and is left alone. So is a roller that
-presses on one in such a hole, right below it, and is no wider and no larger: where the nip gives way it comes
-into the same hole. What is apart there and overlaps later, or once springs are in balance, would need a
-contact, and a run ends. Looked at are pairs of which a part moves: a roller on a slide or an arm, a plate on
-a slide.
+Parts that overlap where they are given stand in a hole that is not modelled, and are not checked. The same
+holds for a roller that presses on one in such a hole, right below it, and is no wider and no larger: where
+the nip yields it moves into the same hole. Parts that are apart at first and overlap later, or once springs
+are in balance, would need a contact, and the run ends. Checked are pairs of which a part moves: a roller on a
+slide or an arm, a plate on a slide.
 """
 
 from __future__ import annotations
@@ -75,7 +75,7 @@ class Overlaps:
                     yield roller, part
 
     def _over_a_hole(self, roller: RollerPart, part: MachinePart) -> bool:
-        """Whether a roller is pressed on one that stands in a hole of the part, right below it, and is no
+        """True if a roller is pressed on one that stands in a hole of the part, right below it, and is no
         wider and no larger."""
         press = roller.press
         if press is None or _press(part) is not None:
@@ -142,9 +142,9 @@ class Overlaps:
         return None
 
     def ahead(self) -> list[Pair]:
-        """The pairs that are apart and on each other's way: of a pressed roller up to what it is pressed on
-        or by its radius, of a plate up to the end of its spring's push, of an arm that meets no other part by
-        a radius either way."""
+        """The pairs that are apart and in each other's path. A pressed roller goes up to what it is pressed
+        on, or by its radius; a plate up to the end of its spring's push. An arm that meets no other part goes
+        by a radius either way."""
         return [pair for pair in self._watched if any(self._deep(pair, *move) for move in self._moves(pair))]
 
     def _deep(self, pair: Pair, at: Floats, by: Floats) -> bool:

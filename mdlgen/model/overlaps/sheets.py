@@ -23,9 +23,10 @@ from mdlgen.model.tables import (
     SheetPart,
 )
 
-# Of the thinner of two sheets: how deep they may be in each other, as what lies between them is pressed.
+# Greatest depth of two sheets in each other, relative to the thinner one: material between them is
+# compressed.
 DEEP = 0.5
-# Of the thinner of two sheets, and of a sheet: nearer than this is on it.
+# Distances below which one sheet lies on another, relative to the thinner one, and on a part, to the sheet.
 ON_SHEET, ON_PART = 0.5, 0.75
 # Places of a box that are looked at, along and across it, in half lengths.
 _PLACES = np.array([[i, j] for i in (-1.0, 0.0, 1.0) for j in (-1.0, 0.0, 1.0)])

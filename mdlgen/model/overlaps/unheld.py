@@ -1,5 +1,5 @@
-"""What no contact holds apart: parts, sheets, and a sheet and itself. A run in which two of them come to
-overlap ends."""
+"""Parts and sheets that no contact separates: parts, sheets, and a sheet and itself. A run in which two of
+them come to overlap ends."""
 
 from __future__ import annotations
 

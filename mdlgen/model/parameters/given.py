@@ -38,9 +38,9 @@ def parameters(
 
 
 def unfollowed(scene: Scene, rows: tuple[Parameter, ...]) -> tuple[tuple[str, str], ...]:
-    """Formulas of values that no row has, and that so are numbers in a text: where they stand, and texts.
+    """Formulas of values that have no row, and so are numbers in an MDL file: their places, and their texts.
 
-    Of nips the rollers are there.
+    For nips the rollers are listed.
     """
     had = {row.path for row in rows} | {_source(scene, row)[0] for row in rows if row.formula}
     return tuple(

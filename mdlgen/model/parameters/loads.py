@@ -1,4 +1,4 @@
-"""What the user gave of loads."""
+"""The parameters that the user gave for loads."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What the user gave of parts of the machine of any kind: places and springs."""
+"""The parameters that the user gave for parts of the machine of any kind: places and springs."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What the user gave of sheets."""
+"""The parameters that the user gave for sheets."""
 
 from __future__ import annotations
 

@@ -25,12 +25,12 @@ from mdlgen.spec.nip import names_of
 from mdlgen.spec.scene import Scene
 
 FOLLOWING = ("push", "root", "touch", "start")  # rows of a data set that may follow
-_STRAIGHT = 1e-9  # mm beside the slide, or of a unit vector: round-off
+_STRAIGHT = 1e-9  # mm off the slide, or of a unit vector: round-off
 
 
 @dataclass(frozen=True)
 class Held:
-    """What holds a pressed roller as the run begins."""
+    """The part that holds a pressed roller as the run begins."""
 
     name: str
     by: str  # a sheet or a roller; "": it begins where its nip has placed it
@@ -42,7 +42,7 @@ class Held:
 def held(
     scene: Scene, name: str, sheets: tuple[SheetPart, ...], contacts: Contacts, start: tuple[float, float]
 ) -> Held | None:
-    """What holds a roller; None where that is no one contact straight ahead of it."""
+    """The part that holds a roller; None where that is not exactly one contact straight ahead of it."""
     roller = scene.rollers[name]
     spec = roller.press
     if spec is None or roller.rim is not None or spec.stiffness == 0.0:
@@ -100,7 +100,7 @@ def _of_roller(scene: Scene, name: str, other: str) -> float | None:
 
 
 def _of_sheet(scene: Scene, name: str, sheet: SheetPart, shared: bool) -> float | None:
-    """What of a flat sheet under it counts; None where it does not lie square to the slide."""
+    """Share of a flat sheet under it that counts; None where the sheet is not square to the slide."""
     roller = scene.rollers[name]
     assert roller.press is not None
     ways, axis = np.array(roller.press.direction), np.array(roller.axis)
@@ -132,8 +132,8 @@ def _meets(scene: Scene, name: str, sheet: str) -> float:
 
 
 def found(scene: Scene, what: Held) -> dict[str, float]:
-    """What follows of a roller that is held so, by member, whatever else might touch it: touching and
-    starting place along its slide [mm], P [N] and C^2 [mm]; the start by bisection."""
+    """Values that follow for a roller that is held so, by member, whatever else might touch it. They are the
+    touching and starting place along its slide [mm], P [N] and C^2 [mm]; the start by bisection."""
     roller = scene.rollers[what.name]
     spec = roller.press
     assert spec is not None

@@ -186,7 +186,7 @@ def _guide(name: str, guide: Guide, body: int) -> GuidePart:
 
 
 def _inertia(guide: GuidePart) -> Floats:
-    """Of a fixed body it is of no effect: that of a ball of the guide's width [g mm^2], (3,)."""
+    """Inertia of a ball of the guide's width [g mm^2], (3,). The body is fixed, so it has no effect."""
     return np.full(3, guide.mass * guide.width**2 / 10)
 
 

@@ -1,6 +1,6 @@
-"""What the Model has to know of a kind of part of the machine.
+"""The interface through which the Model uses a kind of part of the machine.
 
-A new kind is a file beside this one, called as one is.
+A new kind is a file in this folder with the name of the kind.
 """
 
 from __future__ import annotations
@@ -45,7 +45,7 @@ class Boxes(NamedTuple):
 
 
 class Drawn(NamedTuple):
-    """What a page shows of a part."""
+    """A part as a page shows it."""
 
     name: str
     kind: str  # roller, sector (of a rim), mark, mesh (on a roller), plane or guide
@@ -68,7 +68,7 @@ class Kind(Generic[P]):
 
     @property
     def name(self) -> str:
-        """What one is called in a sentence."""
+        """Word for one of this kind in a sentence."""
         return self.part.kind
 
     # -- as a run begins
@@ -80,8 +80,8 @@ class Kind(Generic[P]):
     def parameters(
         self, scene: Scene, name: str, starts: Mapping[str, tuple[float, float]]
     ) -> list[Parameter]:
-        """What the user gave of one, as texts have it; `starts`: where those that are pressed touch and begin
-        along their slides."""
+        """The parameters that the user gave for one, for MDL files; `starts`: the places along their slides
+        where pressed parts touch and begin."""
         raise NotImplementedError
 
     def body(self, part: P, rollers: tuple[RollerPart, ...]) -> BodyRow:
@@ -171,7 +171,7 @@ class Kind(Generic[P]):
         raise NotImplementedError
 
     def facts(self, model: Model, part: P) -> list[str]:
-        """What it is as the run begins, in words."""
+        """Sentences about its state as the run begins."""
         raise NotImplementedError
 
     def label(self, model: Model, part: P, seen: tuple[Floats, Floats]) -> Floats:
@@ -179,5 +179,5 @@ class Kind(Generic[P]):
         return model.bodies.position[part.body]
 
     def overview(self, part: P) -> dict[str, Any]:
-        """What `mdlgen check --json` has of one that is `described`."""
+        """Entries of `mdlgen check --json` for one that is `described`."""
         return {}

@@ -1,6 +1,6 @@
 """All kinds of parts of a machine, in the order in which their bodies are numbered: that of a scene's tables.
 
-A kind is called as its class in `mdlgen.spec` says, and has a file of that name beside this one.
+A kind has the name of its class in `mdlgen.spec`, and a file of that name in this folder.
 """
 
 from __future__ import annotations

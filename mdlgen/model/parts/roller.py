@@ -40,8 +40,8 @@ from mdlgen.spec.scene import Scene
 from mdlgen.units import PER_SECOND
 
 FLAT = 0.1  # a roller is parallel to a sheet while |axis . normal| is below this
-MARK = 0.12  # breadth of the mark on a roller, in times its radius
-PROUD = 0.01  # how far the mark stands out, in times the radius
+MARK = 0.12  # breadth of the mark on a roller, relative to its radius
+PROUD = 0.01  # height of the mark above the surface, relative to the radius
 
 
 class _Rollers(Kind[RollerPart]):
@@ -124,7 +124,7 @@ class _Rollers(Kind[RollerPart]):
     def inside(
         self, part: RollerPart, points: Floats, centers: Floats, position: Floats, rotation: Floats
     ) -> Floats:
-        """Of a rim the least radius counts, wherever that stands."""
+        """A mask of points inside; the least radius of a rim counts, whatever its angle."""
         arms = points - position
         along = arms @ part.axis
         radius = part.radius if part.rim is None else float(part.rim.radius.min())
@@ -153,7 +153,7 @@ class _Rollers(Kind[RollerPart]):
         return 0.5 * part.radius
 
     def constraints(self, model: Model, sheet: SheetPart, part: RollerPart) -> list[tuple[Floats, Floats]]:
-        """What a nip holds, see `lints.idle`; one roller alone lets a sheet go."""
+        """The constraints of a nip, see `lints.idle`; one roller alone has none."""
         return []
 
     def depths(self, part: RollerPart, boxes: Boxes, at: Floats) -> Floats:
@@ -257,7 +257,7 @@ class _Rollers(Kind[RollerPart]):
 
 
 def _turned(part: RollerPart) -> list[str]:
-    """What a motor, a limiter, a bearing or a shaft turns a roller with."""
+    """Sentences about the motor, limiter, bearing or shaft that turns a roller."""
     if part.leader >= 0:
         return [f"turns {part.ratio:.4g} times for each turn of the roller that leads its shaft"]
     axle, found = part.axle, []
@@ -300,8 +300,8 @@ def _drawn(roller: RollerPart) -> list[Drawn]:
 
 
 def swing(roller: RollerPart) -> Floats:
-    """How far a roller on an arm may go either way, by its radius in any direction across its axis, and by as
-    much again as its arm is turned at the start [mm]."""
+    """Distance that a roller on an arm may move in either direction [mm]. It is its radius in any direction
+    across its axis, plus the distance by which its arm is turned at the start."""
     begun = 2.0 * float(np.linalg.norm(_brought(roller)))
     return (roller.reach + begun) * np.sqrt(np.maximum(0, 1 - roller.axis**2))
 

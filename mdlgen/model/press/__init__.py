@@ -1,1 +1,2 @@
-"""What springs press: where it touches, and where it stands in equilibrium as the run begins."""
+"""Pressed parts: where their springs bring them to touch, and where they stand in equilibrium at the
+start."""

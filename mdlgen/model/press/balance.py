@@ -57,7 +57,7 @@ def touch_offset(
 def covered_shares(
     sheet: SheetPart, center: Floats, axis: Floats, width: float, shared: bool
 ) -> list[tuple[float, float]]:
-    """What the (flat) sheet under a roller counts of k, for each thickness that it has there: (share,
+    """Parts of k that the (flat) sheet under a roller contributes, one for each thickness there: (share,
     thickness). A share is the part of the width that is covered, or, where pairs do not share, the number of
     boxes that the roller stands on."""
     stations = (np.arange(200) + 0.5) / 200 - 0.5
@@ -152,7 +152,7 @@ def plate_contact(
 
 
 def _cut(corners: Floats, way: Floats, most: float) -> Floats:
-    """What of a polygon (n, 3) is not further than `most` along `way`."""
+    """The part of a polygon (n, 3) that is not further than `most` along `way`."""
     beyond = corners @ way - most
     if np.all(beyond <= 0.0):
         return corners
@@ -198,8 +198,8 @@ def plate_balance(
     contacts: Sequence[Callable[[Floats], Floats]],
     far: float,
 ) -> tuple[float, float]:
-    """Offset along `direction` where a plate's spring and contacts balance [mm], and what is left of the push
-    [N]: not 0 where it would be further than `far` either way, with the offset at that end."""
+    """Offset along `direction` where a plate's spring and contacts balance [mm], and the remaining push [N].
+    The push is not 0 where the offset would be further than `far` either way; it then is at that end."""
     push = _push(center, direction, spring, contacts)
     if push(0.0) == 0.0:  # nothing pushes it: anywhere about is balance
         return 0.0, 0.0

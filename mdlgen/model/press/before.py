@@ -1,4 +1,4 @@
-"""What is lowered before the parts of a machine are."""
+"""The tables that are lowered before the parts of a machine are."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from mdlgen.model.tables import Contacts, RollerPart, SheetPart
 
 
 class Before(NamedTuple):
-    """What is lowered before a part is."""
+    """The tables that are lowered before a part is."""
 
     sheets: tuple[SheetPart, ...]
     contacts: Contacts

@@ -1,4 +1,4 @@
-"""What springs press, rollers and plates, in static equilibrium as the run begins."""
+"""Rollers and plates that springs press, in static equilibrium as the run begins."""
 
 from __future__ import annotations
 
@@ -98,7 +98,7 @@ def _wheel(roller: Roller, towards: Floats, contacts: Contacts, row: int) -> Whe
 
 
 def _slide(spec: PressSpec, mass: float, carrier: float, touch: float, balance: float) -> Press:
-    """Of what is in balance at a place, and begins there where the user has not said otherwise."""
+    """The slide of a part in balance at a place, which begins there unless the user has given a start."""
     if spec.stops is not None:  # the spring may push it onto one
         balance = min(max(balance, spec.stops.low), spec.stops.high)
     return Press(
@@ -159,7 +159,8 @@ def plate_press(scene: Scene, name: str, before: Before) -> Press:
 
 
 def _profile(roller: Roller, direction: Floats) -> tuple[float, float]:
-    """Radius of a roller along a direction as the run begins [mm], and stiffness in times the contact's."""
+    """Radius of a roller along a direction as the run begins [mm], and stiffness relative to the
+    contact's."""
     rim = lower_rim(roller)
     if rim is None:
         return roller.radius, 1.0

@@ -1,4 +1,4 @@
-"""What turns a roller whose spin is unknown, besides its contacts: motor, torque limiter, bearing, shaft."""
+"""Torques, besides those of contacts, on a roller whose spin is unknown: motor, limiter, bearing, shaft."""
 
 from __future__ import annotations
 
@@ -39,7 +39,7 @@ class AxlePart(Frozen):
 
     @property
     def motor(self) -> bool:
-        """Whether a motor turns it."""
+        """True if a motor turns it."""
         return self.kind in MOTORS
 
     @property

@@ -37,7 +37,7 @@ class Bodies(Frozen):
     fixed: NDArray[np.bool_]  # held: clamped boxes; planes, guides and meshes that move with nothing, (n,)
     half: Floats  # half lengths of a box, body axes; zero for rollers, guides and meshes [mm], (n, 3)
     exposed: NDArray[np.bool_]  # side faces that no neighbour covers: x_min, x_max, y_min, y_max, (n, 4)
-    friction: Floats  # friction of its contacts in times that of the contact, (n,)
+    friction: Floats  # friction of its contacts relative to that of the contact, (n,)
 
 
 # kinds of bushing
@@ -81,7 +81,7 @@ class Plastic(Frozen):
 
 
 def no_plastic() -> Plastic:
-    """Of a Model in which nothing yields."""
+    """The table of a Model in which nothing yields."""
     return Plastic(np.zeros(0, np.int64), np.zeros(0, np.int64), np.zeros(0), np.zeros(0))
 
 

@@ -50,12 +50,12 @@ class Contacts(Frozen):
         return len(self.part_a)
 
     def called(self, row: int) -> str:
-        """What a user calls the entry of a row: its name, or its index in the list."""
+        """The user's name of the entry of a row, or its index in the list."""
         return (self.name[row] if self.name else "") or str(self.entry[row])
 
     @property
     def of_machine(self) -> NDArray[np.bool_]:
-        """Whether both parts are of the machine, (n,)."""
+        """True where both parts are of the machine, (n,)."""
         return np.isin(self.kind, OF_MACHINE)
 
 

@@ -74,7 +74,7 @@ class RimPart(Frozen):
     begin: Floats  # increasing, (n,)
     end: Floats
     radius: Floats  # [mm]
-    friction: Floats  # in times that of a contact
+    friction: Floats  # relative to that of a contact
     stiffness: Floats
     restitution: Floats  # nan: that of a contact
     own: tuple[bool, ...]  # whether the radius is given, and not the roller's
@@ -101,7 +101,7 @@ class CoverPart:
     depth: float  # by which the other surface is pressed into the cover [mm]
     gain: float  # v/(omega R) - 1 of a sheet on it
     bend: float  # of the gain that a run has, (gain - bend) u + bend u^2, u the depth over that at the force
-    misfit: float  # of the law k z^1.5 from half to twice the force, in times the force of the layer
+    misfit: float  # of the law k z^1.5 from half to twice the force, relative to the force of the layer
     gain_misfit: float  # greatest error of the law of the gain there
 
 
@@ -184,26 +184,26 @@ class RollerPart(MachinePart):
 
     @property
     def turns(self) -> bool:
-        """Whether its spin is unknown: it is free, has a clutch, a motor or a limiter, or follows another one
+        """True if its spin is unknown: it is free, has a clutch, a motor or a limiter, or follows another one
         on its shaft."""
         coupled = self.one_way is not None or self.axle is not None or self.leader >= 0
         return self.speed is None or coupled
 
     @property
     def driven(self) -> bool:
-        """Whether a drive, a motor or a limiter has a torque on it: not of one that follows another one on a
-        shaft, whose torque that one has."""
+        """True if a drive, a motor or a limiter exerts a torque on it. The torque of a roller that follows
+        another one on a shaft counts at that one."""
         limited = self.axle is not None and self.axle.kind != FREE
         return self.leader < 0 and (self.speed is not None or limited)
 
     @property
     def begins_turning(self) -> bool:
-        """Whether it begins with the speed of the shaft that a clutch or a limiter couples it to."""
+        """True if it begins with the speed of the shaft that a clutch or a limiter couples it to."""
         return self.speed is not None and self.turns and not self.motor and self.leader < 0
 
     @property
     def motor(self) -> bool:
-        """Whether a motor turns it, whose torque is limited."""
+        """True if a motor turns it, whose torque is limited."""
         return self.axle is not None and self.axle.motor
 
     @property
@@ -255,8 +255,8 @@ class PlanePart(MachinePart):
 
 @dataclass(frozen=True)
 class GuidePart(MachinePart):
-    """A plate, straight or bent to an arc; its centre is the middle of a line, or on an arc's axis. Of
-    its axes z is along the width; x is along a line and y its normal, and the angles of an arc turn from x to
+    """A plate, straight or bent to an arc; its centre is the middle of a line, or on an arc's axis. Its z
+    axis is along the width. Along a line x points and y is its normal; the angles of an arc turn from x to
     y."""
 
     kind: ClassVar[str] = "guide"

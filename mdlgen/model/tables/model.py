@@ -195,7 +195,7 @@ class Model(Frozen):
 
     @property
     def changes(self) -> bool:
-        """Whether a load, or gravity, has a factor over time."""
+        """True if a load, or gravity, has a factor over time."""
         return len(self.gravity_profile) > 0 or bool(self.loads.changing)
 
     @property
@@ -221,7 +221,7 @@ class Model(Frozen):
 
     @property
     def pair_friction(self) -> Floats:
-        """Friction of each kept pair in times that of its contact, (pairs,)."""
+        """Friction of each stored pair relative to that of its contact, (pairs,)."""
         return self.bodies.friction[self.pairs.a] * self.bodies.friction[self.pairs.b]
 
     def mass_share(self, sheet: int) -> Floats:
@@ -231,12 +231,12 @@ class Model(Frozen):
         return mass / mass.sum()
 
     def called(self, body: int) -> str:
-        """What a part of the machine or a box is called in a sentence."""
+        """Name of a part of the machine or a box in a sentence."""
         kind = next((part.kind for part in self.machine if part.body == body), "box")
         return f"{kind} {self.bodies.name[body]}"
 
     def too_deep(self, one: int, other: int, beside: bool = False) -> str:
-        """What is said of a box or a roller that is too deep in another part; beside: it came by its end."""
+        """The message about a box or a roller too deep in another part; beside: it came by its end."""
         rollers = {roller.body for roller in self.rollers}
         if {one, other} <= rollers:
             return f"{self.called(one)} and {self.called(other)} overlap by more than the smaller radius"
@@ -251,7 +251,7 @@ class Model(Frozen):
         return f"{self.called(one)} is more than half of its {size} into {self.called(other)}"
 
     def held_by(self, one: int, way: float) -> str:
-        """What would hold a body that is too deep in another one and comes nearer by `way` [mm] in a step: a
+        """A remedy for a body that is too deep in another one and approaches by `way` [mm] in a step. It is a
         finer step only where a few of its steps are that deep."""
         sheet = self.sheet_of(one)
         finer = sheet is None or way > 0.5 * sheet.thickness / FEW_STEPS
@@ -260,7 +260,7 @@ class Model(Frozen):
         return "a stiffer contact would hold it, a smaller run.step would not"
 
     def bounds_of(self, body: int) -> tuple[str, str]:
-        """What the bounds of a body are, and what to do where it has left them."""
+        """The bounds of a body in words, and the remedy where it has left them."""
         for plate, press in self.plates:
             if plate.body == body:
                 return (

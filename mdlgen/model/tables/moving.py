@@ -40,7 +40,7 @@ class MovingPart(Frozen):
 
     @property
     def free(self) -> bool:
-        """Whether forces move it."""
+        """True if forces move it."""
         return self.inertia > 0.0
 
     @property

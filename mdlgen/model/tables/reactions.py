@@ -57,5 +57,5 @@ class Reactions(Frozen):
 
 
 def no_reactions() -> Reactions:
-    """Of a machine that does not see and goes by itself."""
+    """The table of a machine without sensors and rules."""
     return Reactions()

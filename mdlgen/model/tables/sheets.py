@@ -40,7 +40,7 @@ class Crease:
     size: tuple[float, float]  # from the corner to the ends of the crease; of a fold zero [mm]
     line: tuple[int, int]  # a fold is on this line along its direction; an ear turns about where both cross
     angle: float  # [rad]
-    stiffness: float  # of its joints in bending, in times that of the sheet
+    stiffness: float  # of its joints in bending, relative to that of the sheet
     per_length: float | None = None  # stiffness of the crease itself [N mm/rad per mm]; None: `stiffness`
 
 
@@ -127,7 +127,7 @@ class SheetPart(Frozen):
 
     @property
     def passes(self) -> bool:
-        """Whether it may come in or leave during a run."""
+        """True if it may come in or leave during a run."""
         return self.enters != 0.0 or bool(self.out) or self.out_at_rest
 
     @property
@@ -137,7 +137,7 @@ class SheetPart(Frozen):
 
     @property
     def uniform(self) -> bool:
-        """Whether all boxes, and all joints of one kind, are alike."""
+        """True if all boxes, and all joints of one kind, are alike."""
         return not any(self.graded) and not self.zones and not (self.bend is not None and self.bend.creases)
 
     @property

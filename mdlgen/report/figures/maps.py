@@ -34,7 +34,7 @@ class Map(NamedTuple):
 
     @property
     def parts(self) -> Floats:
-        """Of the greatest value, 0 where there is nothing but round-off, (n,)."""
+        """Values relative to the greatest one, 0 where there is only round-off, (n,)."""
         most = float(self.values.max())
         return self.values / most if most >= _NOTHING else np.zeros_like(self.values)
 
@@ -90,7 +90,8 @@ def strain_map(result: Result) -> bytes:
 
 
 def maps(result: Result) -> list[Map]:
-    """Of strain and of curvature, along each axis of each sheet that has joints: their peaks over the run."""
+    """Maps of strain and curvature, along each axis of each sheet that has joints: their peaks over the
+    run."""
     if result.strains is None:
         return []
     strains = result.strains

@@ -1,4 +1,4 @@
-"""The pictures of a run for print, which stand beside its page where they are asked for."""
+"""The pictures of a run for print, stored in the folder of its page on request."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ NAMES = ("report.png", "strain.png")
 
 
 def are_drawn(folder: Path) -> bool:
-    """Whether `folder` has pictures."""
+    """True if `folder` has pictures."""
     return any((folder / name).exists() for name in NAMES)
 
 

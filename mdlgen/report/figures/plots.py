@@ -24,7 +24,7 @@ Lines = dict[str, Floats]  # label: values over time, (t,)
 
 
 def _components(curves: dict[str, Floats]) -> Lines:
-    """Those of each curve (t, 3) that count beside the largest."""
+    """Components of each curve (t, 3) that are not small compared with the largest."""
     largest = max((float(np.abs(curve).max()) for curve in curves.values()), default=0.0)
     return {
         f"{name} {axis}": curve[:, k]

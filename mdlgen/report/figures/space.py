@@ -74,7 +74,7 @@ class Space:
         self.faces: list[Floats] = list(moved[:, FACES].reshape(-1, 4, 3))
         self.colours: list[tuple[float, ...]] = [ramp(float(v)) for v in np.repeat(share[own], len(FACES))]
         self.plane: list[bool] = [False] * len(self.faces)
-        # centre and normal of every box, by which what lies behind a sheet is known from what lies before it
+        # centre and normal of every box, which separate parts behind a sheet from those in front of it
         self.of_boxes, near = len(self.faces), own if own.size else np.arange(count)
         self.boxes = place[near], turn[near, :, 2]
         held = [moved.reshape(-1, 3)]

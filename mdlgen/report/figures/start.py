@@ -20,7 +20,7 @@ from mdlgen.report.sheets import parts_of_sheets
 
 _TONES = (("x", "#d55e00"), ("y", "#009e73"), ("z", "#0072b2"))
 _WARNS, _PLAIN = "#b13c00", "#1b1e22"
-_BAR = 0.15  # greatest length of the scale, in times the breadth of a panel
+_BAR = 0.15  # greatest length of the scale, relative to the breadth of a panel
 _ORIGIN = (34.0, 38.0)  # of the axes, from the lower left corner [points]
 _JOINT = 0.95  # of a box's lengths, so that the grid is seen
 _LETTER, _LINE = 4.2, 8.5  # breadth of a letter of a name and height of its line [points]
@@ -80,8 +80,8 @@ def _over(model: Model, parts: list[Known], panel: Any, view: Floats, shown: Fra
 
 
 def _names(parts: list[Known], panel: Any, view: Floats, shown: Frame) -> None:
-    """Names beside the parts' middles; one that would lie on another is left out, of those with a warning
-    the last."""
+    """Names next to the parts' middles. A name that would cover another one is left out; names with a warning
+    are placed first."""
     low, high = shown
     box = panel.get_window_extent()
     scale = 72.0 / panel.figure.dpi * min(box.width / (high[0] - low[0]), box.height / (high[1] - low[1]))

@@ -59,8 +59,8 @@ def stills(result: Result, at_ms: list[float]) -> dict[str, bytes]:
 
 
 def _colours(result: Result, at: Ints) -> tuple[str, str, Floats, float]:
-    """What boxes are coloured by, its unit, values at states, (t, boxes), and the greatest of the run: speed,
-    and of a sheet at rest curvature."""
+    """The quantity that colours the boxes, its unit, values at states, (t, boxes), and the greatest of the
+    run: speed, and curvature for a sheet at rest."""
     every = np.arange(len(result.time))
     speeds = boxes.speed(result, every)
     if speeds.max() > 0.0:

@@ -37,7 +37,7 @@ class Panel:
     key: str  # the same in every run
     title: str
     unit: str
-    short: str = field(default="", kw_only=True)  # its name beside a part, in words; else its key
+    short: str = field(default="", kw_only=True)  # its name next to a part, in words; else its key
     lines: list[Line] = field(default_factory=list)
     x_title: str = "time [ms]"
     note: str = ""
@@ -62,7 +62,7 @@ def panels(
 
 
 def _thin(result: Result) -> Ints:
-    """Stored states that are drawn of what is known at all of them."""
+    """Indices of the stored states that are drawn, for quantities known at all of them."""
     every = max(1, -(-len(result.time) // POINTS))
     return thinned(len(result.time), every)
 
@@ -163,7 +163,7 @@ def _gates(result: Result, thin: Ints) -> list[Panel]:
 
 
 def _drives(result: Result, thin: Ints) -> list[Panel]:
-    """What each drive gives, and how much of the grip of sheets on each roller is used."""
+    """Torque and power of each drive, and the used part of the grip of sheets on each roller."""
     torque = Panel("torque", "Torque of each drive", "N mm")
     torque.note = "about the roller's axis: what contacts and its inertia take"
     power = Panel("power", "Power of each drive", "W")
@@ -183,7 +183,7 @@ def _drives(result: Result, thin: Ints) -> list[Panel]:
 
 
 def _drags(result: Result) -> list[Panel]:
-    """What planes, guides and fixed meshes take from sheets by friction."""
+    """Friction drag of planes, guides and fixed meshes on sheets."""
     thin = _thin(result)
     panel = Panel("drag", "Drag of each plane and guide on sheets", "N")
     panel.note = "friction, summed over contact points"
@@ -197,7 +197,7 @@ def _drags(result: Result) -> list[Panel]:
 
 
 def _energies(result: Result) -> list[Panel]:
-    """What drives have given since the start, and what contacts have taken by friction and rolling."""
+    """Energy that drives have put in since the start, and that contacts took by friction and rolling."""
     given = Panel("driven_energy", "Energy that each drive has given", "N mm", short="driven")
     rubbed = Panel("friction_loss", "Energy lost at each part by friction and rolling", "N mm", short="lost")
     rubbed.note = "at its contacts with sheets, and half of what is between two parts; from stored states"

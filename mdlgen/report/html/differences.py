@@ -1,5 +1,5 @@
-"""Two or more runs beside each other: what was set differently, what came of it, and how far apart the
-sheets are."""
+"""Compares two or more runs: values that were set differently, their results, and the distances between the
+sheets."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from mdlgen.results.result import Result
 _LEFT_OUT = ("events", "versions", "estimates", "estimate_scales", "verdict", "rules")
 # Numbers nearer to each other than this part of the greatest, or than this, are the same.
 SAME = 1e-9
-# What a design is judged by; where a greatest value was, and what it cost to compute, comes behind it.
+# Results that judge a design. Places of extremes, and the computing cost, follow behind them.
 _OUTCOMES = ("sheets.", "probes.", "rollers.", "planes.")
 _DETAILS = ("boxes", "bushings", "at_mm", "at_ms", "joint", "contacts", "rounds")
 
@@ -64,7 +64,7 @@ def _is_outcome(key: str) -> bool:
 
 
 def _equal(values: Sequence[Any]) -> bool:
-    """Whether all runs have one value, but for round-off."""
+    """True if all runs have one value, but for round-off."""
     if any(value is None or isinstance(value, str) for value in values):
         return len(set(values)) == 1
     return max(values) - min(values) <= SAME * max(1.0, *map(abs, values))

@@ -1,4 +1,4 @@
-"""What all pages are made with: templates, and the scripts that draw in space."""
+"""Shared parts of all pages: templates, and the scripts that draw in space."""
 
 from __future__ import annotations
 
@@ -25,13 +25,13 @@ def library(figures: bool = True) -> dict[str, str]:
 
 
 def licences(figures: bool = True) -> dict[str, str]:
-    """Of what a page is drawn with, by name."""
+    """Licences of the libraries that draw a page, by name."""
     found = {"three.js (MIT)": _third("LICENSE")}
     return found | ({"uPlot (MIT)": _third("LICENSE.uPlot")} if figures else {})
 
 
 def style(*more: str) -> str:
-    """Of pages with figures; `more` are files behind it."""
+    """Styles of pages with figures; `more` are files behind it."""
     return "\n".join([_third("uPlot.min.css"), *scripts(("style.css", *more))])
 
 

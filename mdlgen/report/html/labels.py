@@ -1,4 +1,4 @@
-"""What a page says of parts in space: their names, where these stand, and what is known of each."""
+"""Labels of parts in space on a page: their names, their places, and facts about each."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What sensors saw and rules did over the time of a run, in rows as a logic analyser shows them."""
+"""States of sensors and rules over the time of a run, in rows as a logic analyser shows them."""
 
 from __future__ import annotations
 
@@ -6,7 +6,7 @@ import math
 from collections.abc import Mapping
 from typing import Any
 
-# Of the drawing, in its own units (convention).
+# Sizes of the drawing, in its own units (convention).
 WIDE, LEFT, HIGH, AXIS, NUMBER = 1000.0, 150.0, 24.0, 22.0, 22.0
 
 

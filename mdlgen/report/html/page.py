@@ -77,10 +77,10 @@ def prepare(model: Model) -> None:
 
 
 def run_record(result: Result, name: str, draft: Ints | None = None) -> dict[str, Any]:
-    """What the template takes of a run, and under `drawn` the scripts.
+    """The record of a run for the template, with the data of the scripts under `drawn`.
 
-    `draft`: the stored states that are drawn of a run that another soon takes the place of; it has no maps of
-    what each joint bore.
+    `draft`: the stored states to draw of a run that another one soon replaces; it has no maps of the loads of
+    each joint.
     """
     at = frames(result) if draft is None else draft
     joints = histories(result, at)

@@ -70,7 +70,7 @@ def preview(model: Model, source: str = "") -> str:
 
 
 def _animation(model: Model) -> tuple[dict[str, list[tuple[str, float]]], dict[str, Any]]:
-    """What is drawn in space, and what parts of the ramp mean in the colours that are no number."""
+    """The drawing in space, and the meaning of parts of the ramp for colours that are not numbers."""
     keys, share = parts_of_sheets(model)
     thick = np.concatenate([sheet.thick for sheet in model.sheets])
     colours = [colour("sheet", "", share[None], (0.0, 1.0))]

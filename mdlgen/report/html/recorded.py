@@ -12,7 +12,7 @@ _AXES = ("x", "y", "z")
 
 
 def sentences(found: Against) -> list[str]:
-    """What was compared, a shift that would fit better, and what of the file is not of the scene."""
+    """Sentences on the comparison, on a shift in time that would fit better, and on unused content."""
     said = [
         f"{len(found.quantities)} quantities of {found.file}, at {found.states} times from "
         f"{number(found.begin_ms, _DIGITS)} to {number(found.end_ms, _DIGITS)} ms"

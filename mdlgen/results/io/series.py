@@ -54,8 +54,8 @@ def series(result: Result) -> dict[str, Floats]:
 
 
 def _energies(result: Result) -> dict[str, Floats]:
-    """What each drive has given, and what the contacts of each part have taken by friction and rolling, since
-    the start."""
+    """Energy that each drive has put in, and that friction and rolling at the contacts of each part have
+    dissipated, since the start."""
     found: dict[str, Floats] = {}
     if result.losses is None:
         return found

@@ -27,7 +27,7 @@ STATES = ("time", "position", "rotation", "velocity", "spin", "contact_force")
 # which files of older versions do not have, or those of scenes in which nothing yields, or without motors, or
 # in which no sheet comes in or leaves
 TURNS = ("contact_torque", "contact_friction", "plastic", "behind", "stays")
-# of a Result, beside its states: what the tables of the file hold
+# fields of a Result, apart from its states, that the tables of the file hold
 STORED = (
     "model", "solver", "status", "touched", "energy", "step", "steps", "rounds", "halved", "error_estimate",
     "error_estimate_of", "error_below", "error_unknown", "search_ended", "chaotic", "doubts", "estimates",

@@ -13,7 +13,7 @@ from mdlgen.model.parts.kinds import KINDS
 from mdlgen.results.estimates import Estimate
 from mdlgen.results.result import Chaos, Energy
 
-# What may stand in a file; a name is looked up here and nowhere else.
+# Classes that a file may hold; a name is searched here and nowhere else.
 _CLASSES = {
     **{name: kind for name, kind in vars(tables).items() if isinstance(kind, type) and is_dataclass(kind)},
     **{kind.part.__name__: kind.part for kind in KINDS},
@@ -58,7 +58,8 @@ def put(file: Any, values: dict[str, Any]) -> None:
 
 
 def take(file: Any) -> dict[str, Any]:
-    """What `put` wrote. Raises KeyError or TypeError for what this version does not know."""
+    """The object that `put` wrote. Raises KeyError or TypeError for content that this version does not
+    know."""
     return _decode(json.loads(bytes(file[_TEXT][()])), file)
 
 

@@ -1,1 +1,1 @@
-"""What another program recorded of the same scene: its files, and how far a run is from them."""
+"""Recordings of the same scene by another program: reading their files, and comparing a run with them."""

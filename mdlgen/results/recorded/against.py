@@ -179,7 +179,7 @@ def _unit(column: str) -> str:
 
 
 def _common(result: Result, recording: Recording) -> np.ndarray:
-    """Stored times of the run that the recording covers. Of a state of rest each has one."""
+    """Stored times of the run that the recording covers. A static analysis has one time in each."""
     slack = ROUNDED * max(float(result.time[-1]), float(recording.time[-1]), LEAST)
     if result.model.run.analysis == "static" and len(recording.time) == 1:
         return np.array([len(result.time) - 1])

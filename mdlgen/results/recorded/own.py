@@ -1,4 +1,4 @@
-"""What a run has of each request that texts, decks and scripts record."""
+"""The quantities of a run that the requests in MDL files, decks and scripts record."""
 
 from __future__ import annotations
 
@@ -21,8 +21,8 @@ class Quantity:
     name: str  # probes.lead.position
     unit: str
     values: Floats  # (t, 1 or 3)
-    labels: tuple[str, str]  # that its request may have: the name, and the comment
-    take: Callable[[Floats], Floats]  # of six numbers (t, 6), (t, 1 or 3)
+    labels: tuple[str, str]  # of its request: name and comment
+    take: Callable[[Floats], Floats]  # picks (t, 1 or 3) of the six numbers of a request, (t, 6)
     rate: bool = False  # whether the last three of the six are its rate [1/s]
     moves: bool = False  # whether a difference is relative to how far it moved, not to its value
     least: float = LEAST  # below which that is not what a difference is relative to
@@ -42,7 +42,7 @@ def _last(six: Floats) -> Floats:
 
 
 def _along(axis: Floats) -> Callable[[Floats], Floats]:
-    """Of the last three numbers what is along an axis."""
+    """A function that projects the last three of six numbers on an axis."""
     return lambda six: six[:, 3:] @ axis[:, None]
 
 

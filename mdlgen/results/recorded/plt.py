@@ -26,7 +26,7 @@ _HEADER = 3  # lines before the list of requests
 
 
 def is_plot(text: str) -> bool:
-    """Whether a text begins as a plot file does."""
+    """True if a text begins as a plot file does."""
     return text.startswith("MotionSolve") and HEAD in text[:200].split("\n", 1)[0]
 
 

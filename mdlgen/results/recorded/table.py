@@ -20,7 +20,7 @@ _TIME = re.compile(r"time\b|time_", re.I)
 
 
 def is_table(text: str) -> bool:
-    """Whether a text begins with a head whose first name is the time."""
+    """True if a text begins with a head whose first name is the time."""
     return _TIME.match(text.lstrip("\ufeff\"' \t")) is not None
 
 

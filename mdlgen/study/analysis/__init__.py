@@ -1,1 +1,1 @@
-"""What the cases of a study say together."""
+"""Statistics over the cases of a study."""

@@ -1,4 +1,4 @@
-"""What a measure owes to which variable: means over the levels of one, what two do together, and Sobol's
+"""Effects of variables on a measure: means over the levels of one, interactions of two, and Sobol's
 indices."""
 
 from __future__ import annotations
@@ -13,7 +13,7 @@ from mdlgen.model.tables import Floats, Ints
 from mdlgen.results.wording import ROUND_OFF
 
 LEVEL = 0.95
-# Of a variable with more values than this its cases are put into so many groups of equal size.
+# A variable with more values than LEVELS has its cases divided into GROUPS groups of equal size.
 LEVELS, GROUPS = 12, 5
 # Cells of two variables that hold one case or two count where this part of them is filled, as in a grid.
 FILLED = 0.8
@@ -50,13 +50,12 @@ class MainEffect:
 
 
 def is_constant(measure: Floats) -> bool:
-    """Whether a measure is the same in all cases, but for round-off: then nothing is said of what it owes to
-    what."""
+    """True if a measure is the same in all cases, but for round-off: then no effects are reported."""
     return not len(measure) or float(np.ptp(measure)) <= ROUND_OFF * max(1.0, float(np.abs(measure).max()))
 
 
 def main_effect(values: Sequence[float], measure: Sequence[float]) -> MainEffect | None:
-    """Of the cases with these values of a variable and of a measure; those without a number are left out.
+    """Effect of a variable on a measure, by their values in the cases; cases without a number are left out.
 
     None where there are too few cases for two groups, or where the measure never changes.
     """
@@ -140,9 +139,9 @@ def sobol(measure: Sequence[float], variables: int) -> tuple[Indices, ...] | Non
     """Indices of each variable, from the measure in the cases of `sampling.sample("saltelli", ...)`.
 
     First order after Saltelli et al. (Comput. Phys. Commun. 181, 2010), total order after Jansen (1999). A
-    number that is missing takes its n + 2 cases out. The bootstrap draws such rows anew, always the same.
-    None where less than two rows are left, or where the measure never changes. Raises SpecError for a number
-    of cases that no such sample has.
+    missing number removes its n + 2 cases. The bootstrap resamples such rows, always with the same seed. None
+    where less than two rows remain, or where the measure never changes. Raises SpecError for a number of
+    cases that no such sample has.
     """
     y = np.asarray(measure, dtype=float)
     if variables < 1 or not len(y) or len(y) % (variables + 2):

@@ -1,4 +1,4 @@
-"""What a sweep says as a whole: probabilities of events, effects, interactions and Sobol's indices."""
+"""Findings of a sweep as a whole: probabilities of events, effects, interactions and Sobol's indices."""
 
 from __future__ import annotations
 
@@ -86,7 +86,7 @@ def _effect(found: MainEffect) -> dict[str, Any]:
 def _interactions(
     paths: Sequence[str], table: dict[str, Column], measure: Sequence[float]
 ) -> list[dict[str, Any]]:
-    """What two variables do together, the greatest first."""
+    """Interactions of two variables, the greatest first."""
     found: list[dict[str, Any]] = []
     for one, other in combinations(paths[:_MOST_VARIABLES], 2):
         share = interaction(places(table[one]), places(table[other]), measure)

@@ -11,7 +11,7 @@ LEVEL = 0.95
 
 @dataclass(frozen=True)
 class Probability:
-    """Of an event: it happened in `hits` of `known` cases; `failed` cases say nothing.
+    """Probability of an event: it happened in `hits` of `known` cases; `failed` cases do not count.
 
     `low` and `high` hold the true value with the probability `level` at least, where cases are independent.
     """
@@ -48,7 +48,7 @@ def probability(hits: int, known: int, failed: int = 0, level: float = LEVEL) ->
 
 
 def caveat(kind: str) -> str:
-    """What the way in which cases were drawn does to the interval; "" for independent ones."""
+    """The caveat about the interval for cases that were drawn in this way; "" for independent ones."""
     if kind == "random":
         return ""
     if kind in ("lhs", "sobol"):

@@ -55,7 +55,7 @@ def _values(path: str, texts: Sequence[str]) -> Column:
 
 
 def times(rows: Sequence[CaseRow]) -> list[Column]:
-    """What each case took [s], and where it was run."""
+    """Time of each case [s], and the worker that ran it."""
     rows = sorted(rows, key=lambda row: row.index)
     took = [asdict(row.times) for row in rows]
     return [
@@ -80,7 +80,7 @@ def _text(cell: Cell) -> str:
 
 
 def installed() -> bool:
-    """Whether there is something that writes Parquet."""
+    """True if a package that writes Parquet is installed."""
     from importlib.util import find_spec
 
     return find_spec("pyarrow") is not None

@@ -1,1 +1,1 @@
-"""What a study asks: values that differ, cases, and what is measured of each."""
+"""The design of a study: values that differ, cases, and the measures of each."""

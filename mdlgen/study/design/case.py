@@ -17,7 +17,7 @@ class Case:
 
     @property
     def overrides(self) -> tuple[str, ...]:
-        """What `mdlgen.load` takes: `PATH=VALUE`, one for each place of a path that names several."""
+        """Overrides for `mdlgen.load`: `PATH=VALUE`, one for each place of a path that names several."""
         return tuple(f"{place}={text}" for path, text in self.values for place in path.split(BETWEEN))
 
     @property

@@ -1,4 +1,4 @@
-"""What a value of the scene is drawn from: `PATH=LO:HI`, `PATH=normal(0.3, 0.05, 0.1:0.5)`, `PATH=[a, b]`."""
+"""Distributions of a value of the scene: `PATH=LO:HI`, `PATH=normal(0.3, 0.05, 0.1:0.5)`, `PATH=[a, b]`."""
 
 from __future__ import annotations
 
@@ -93,7 +93,7 @@ class Choice:
 
 
 def parse_distribution(text: str, option: str = "--over") -> Distribution | Choice:
-    """Of `PATH=LO:HI`, `PATH=uniform(LO, HI)`, `PATH=normal(MEAN, DEVIATION[, LO:HI])`,
+    """Parses `PATH=LO:HI`, `PATH=uniform(LO, HI)`, `PATH=normal(MEAN, DEVIATION[, LO:HI])`,
     `PATH=lognormal(MEDIAN, DEVIATION of ln[, LO:HI])` or `PATH=[a, b, c]`; quantities stand with their units.
 
     Raises SpecError in one line for anything else.

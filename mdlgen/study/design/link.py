@@ -50,7 +50,7 @@ class Link:
 
 
 def parse_link(text: str) -> Link:
-    """Of `PATH=NAME` or `PATH=QUANTITY + FACTOR*NAME`. Raises SpecError."""
+    """Parses `PATH=NAME` or `PATH=QUANTITY + FACTOR*NAME`. Raises SpecError."""
     path, rest = split(text, "--let", HOW)
     match = _FORM.fullmatch(rest)
     if match is None:

@@ -57,7 +57,7 @@ def flat(record: Mapping[str, Any], within: str = "") -> dict[str, Value]:
 
 
 def _margin(row: Mapping[str, Any]) -> float | None:
-    """Of a requirement in its unit, below zero where it is missed; of an event less how often it came."""
+    """Margin of a requirement in its unit, below zero where it is missed; for an event, minus its count."""
     if row["value"] is None:
         return None
     return float(row["margin"]) if row["margin"] is not None else -float(row["value"])
@@ -84,7 +84,7 @@ def known(model: Model) -> dict[str, Value]:
 
 
 def defaults(model: Model) -> list[str]:
-    """What is measured where nothing is asked for: travel, speed and yaw of each sheet."""
+    """The measures without a choice of the user: travel, speed and yaw of each sheet."""
     names = ("travel_mm", "speed_mm_per_s", "yaw_deg")
     return [f"sheets.{sheet.name}.{name}" for sheet in model.sheets for name in names]
 
@@ -142,7 +142,7 @@ def check(expression: Expression, names: Mapping[str, Value], option: str) -> No
 
 
 def _near(name: str, names: Mapping[str, Value]) -> str:
-    """What there is where the name stops to be known."""
+    """The known names at the level where the name is not known."""
     words = name.split(".")
     for end in range(len(words) - 1, -1, -1):
         head = "".join(f"{word}." for word in words[:end])

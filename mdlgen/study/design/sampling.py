@@ -1,4 +1,4 @@
-"""Which values are tried: points of the unit cube, and the values that distributions have there."""
+"""Samples of values: points of the unit cube, and the values that distributions have there."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What all cases of a study share: plain data, so that any process on any machine can have it."""
+"""The data shared by all cases of a study: plain, so that any process on any machine can have it."""
 
 from __future__ import annotations
 

@@ -78,7 +78,7 @@ def interval(low: str, high: str, message: str) -> tuple[float, float, str]:
 
 
 def variable(text: str, option: str = "--over") -> Variable:
-    """Of `PATH=START:STOP:N` or `PATH=[a, b, c]`. Raises SpecError."""
+    """Parses `PATH=START:STOP:N` or `PATH=[a, b, c]`. Raises SpecError."""
     path, rest = split(text, option)
     message = f"{option} {text[:80]!r}"
     texts = _list(rest, message) if rest.startswith("[") else _range(rest, message)

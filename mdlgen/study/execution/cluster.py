@@ -28,7 +28,7 @@ Versions = dict[str, str]
 
 @cache
 def versions() -> Versions:
-    """What the bits of a row follow from, of this process; the same on every machine of a cluster."""
+    """All versions that determine the bits of a row, of this process; equal on all machines of a cluster."""
     from mdlgen import registry
     from mdlgen.runs.provenance import provenance
 
@@ -36,7 +36,7 @@ def versions() -> Versions:
 
 
 def _here() -> Versions:
-    """Of the process that asks."""
+    """Versions of the process that asks."""
     return versions()
 
 
@@ -53,7 +53,7 @@ def checked(task: Task, case: Case, here: Versions) -> CaseRow:
 
 
 def differences(there: Versions, here: Versions) -> str:
-    """What differs, as `numpy 1.26.4, here 2.4.6`; empty where nothing does."""
+    """Differences in words, as `numpy 1.26.4, here 2.4.6`; empty where there are none."""
     words = {"code": "other code of the solver"}
     return "; ".join(
         words.get(name, f"{name} {there.get(name)}, here {value}")
@@ -132,7 +132,7 @@ class Cluster:
                 self._client.cancel(list(waiting), force=True)
 
     def _row(self, future: Any, case: Case) -> CaseRow:
-        """Of a case that is done; lost where its workers died, or could not run it at all."""
+        """The row of a case that is done; lost where its workers died, or could not run it at all."""
         from distributed import CancelledError, KilledWorker
 
         try:

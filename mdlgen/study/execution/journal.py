@@ -1,7 +1,8 @@
-"""What a study has found so far, line by line, so that it can go on after an interrupt or a crash.
+"""The journal of a study: its findings so far, line by line, so that it can resume after an interrupt or
+crash.
 
-The first line says what was asked for; each other one is a row, on the disk before the next case counts as
-done. A last line that was cut off is as if it had not been written.
+The first line holds the request. Each other line is a row, on the disk before the next case counts as done. A
+last line that was cut off is ignored.
 """
 
 from __future__ import annotations
@@ -48,7 +49,7 @@ class Journal:
 
     @classmethod
     def resume(cls, folder: Path) -> Journal:
-        """The one in `folder`, to be gone on with. Raises OutputError."""
+        """The journal in `folder`, to be continued. Raises OutputError."""
         asked, rows, whole = _read(folder / NAME)
         try:
             stream = open(folder / NAME, "r+b")  # noqa: SIM115
@@ -97,7 +98,7 @@ class Journal:
 
 
 def read(folder: Path) -> tuple[Asked, dict[int, CaseRow]]:
-    """What was asked for, and the rows by index, of a study that may still go on. Raises OutputError."""
+    """The request and the rows by index of a study that may still be running. Raises OutputError."""
     asked, rows, _ = _read(folder / NAME)
     return asked, rows
 
@@ -129,7 +130,7 @@ def _read(path: Path) -> tuple[Asked, dict[int, CaseRow], int]:
 
 
 def _kind(path: Path) -> str:
-    """What the journal is of, and how far: for a message."""
+    """The kind of study that the journal is of, and its progress: for a message."""
     try:
         asked, rows, _ = _read(path)
     except OutputError:

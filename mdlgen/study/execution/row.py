@@ -1,11 +1,12 @@
-"""What one case came to: a row of the table."""
+"""The outcome of one case: a row of the table."""
 
 from __future__ import annotations
 
 from dataclasses import asdict, dataclass, field
 from typing import Any
 
-# What became of a case. `inaccurate` has its measures, and an error estimate above run.tolerance; `refused`
+# Kinds of outcomes of a case. `inaccurate` has its measures, and an error estimate above run.tolerance;
+# `refused`
 # is a scene that cannot be meant or run; `failed` a run that ended with its reason; `lost` one that nothing
 # is known of, because its process died: a resumed study runs it again.
 OK, INACCURATE, REFUSED, FAILED, LOST = "ok", "inaccurate", "refused", "failed", "lost"
@@ -45,7 +46,7 @@ class CaseRow:
 
     @property
     def measured(self) -> bool:
-        """Whether there are measures."""
+        """True if there are measures."""
         return self.kind in (OK, INACCURATE)
 
     def json(self) -> dict[str, Any]:

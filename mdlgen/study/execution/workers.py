@@ -32,7 +32,7 @@ Heard = Callable[[str], None]
 
 
 class Runner(Protocol):
-    """What runs cases: processes of this machine, or a cluster."""
+    """A runner of cases: processes of this machine, or a cluster."""
 
     def rows(self, task: Task, cases: Sequence[Case]) -> Iterator[CaseRow]:
         """The rows of the cases, as they are done."""

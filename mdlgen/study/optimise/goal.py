@@ -1,4 +1,4 @@
-"""What an optimisation is after: a number that is to be small, and conditions that are to hold."""
+"""The goal of an optimisation: a number to minimise, and conditions that must hold."""
 
 from __future__ import annotations
 
@@ -54,12 +54,12 @@ class Goal:
         return min(good, key=lambda row: (row.measures[OBJECTIVE], row.index), default=None)
 
     def complete(self, row: CaseRow) -> bool:
-        """Whether the run gave every number that the goal asks for."""
+        """True if the run gave every number that the goal asks for."""
         return row.measured and all(row.measures.get(n) is not None for n in (OBJECTIVE, *self.names))
 
 
 def goal(minimise: str, conditions: Sequence[str]) -> Goal:
-    """Of `--minimise` and `--subject-to`. Raises SpecError for a condition that is no comparison of two."""
+    """The goal of `--minimise` and `--subject-to`. Raises SpecError for a condition that compares no two."""
     read(minimise, "--minimise")
     margins = []
     for text in conditions:

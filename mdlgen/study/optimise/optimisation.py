@@ -34,8 +34,8 @@ Count = Callable[[int, int], None]
 
 @dataclass(frozen=True)
 class Optimisation:
-    """What is asked for; `most` is how many runs it may take, `precision` where the best value is to be
-    known, as a part of its range, `together` how many designs are run at a time (Optuna alone)."""
+    """The request of an optimisation. `most` limits the number of runs. `precision` is that of the best
+    value, as a part of its range; `together` is the number of designs that run at a time (Optuna alone)."""
 
     task: Task
     vary: tuple[str, ...]
@@ -50,7 +50,7 @@ class Optimisation:
     model: str  # digest of the design in the middle
 
     def asked(self) -> Asked:
-        """What the journal says of it."""
+        """The request in the form of the journal."""
         from mdlgen import registry
         from mdlgen.runs.provenance import provenance
 
@@ -67,7 +67,7 @@ class Optimisation:
 
 
 def variables(texts: Sequence[str]) -> Variables:
-    """Of `--vary` texts, `PATH=LO:HI` or `PATH=[a, b, c]`. Raises SpecError."""
+    """Parses `--vary` texts, `PATH=LO:HI` or `PATH=[a, b, c]`. Raises SpecError."""
     found = tuple(parse_distribution(text, "--vary") for text in texts)
     for text, variable in zip(texts, found, strict=True):
         if isinstance(variable, Distribution) and variable.kind != "uniform":
@@ -144,7 +144,7 @@ def opened(folder: Path, wanted: Optimisation | None, resume: bool) -> tuple[Opt
 
 
 def _read(folder: Path, asked: Asked) -> Optimisation:
-    """What the journal there was asked for. Raises OutputError."""
+    """The request of the journal there. Raises OutputError."""
     try:
         if asked["what"] != WHAT:
             raise ValueError(f"of {asked['what']!s:.40}")

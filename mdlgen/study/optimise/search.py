@@ -20,12 +20,12 @@ METHODS = ("auto", "brent", "cobyqa", "optuna")
 PRECISION = 1e-3
 # First steps of COBYQA, as a part of each range.
 _FIRST_STEP = 0.25
-# So far from the middle does COBYQA begin: conditions in round numbers pass through the middle itself, where
-# rounding decides whether they hold, and the search ended beside the best point.
+# COBYQA begins so far from the middle: conditions in round numbers pass through the middle itself. Rounding
+# then decides whether they hold, and the search ended next to the best point.
 _OFF_MIDDLE = 0.0137
-# Where conditions hold by a hair it may end beside the best point all the same, by how sums are rounded on a
-# machine: it begins again beside the best point that it found, on the other side, with steps of this part,
-# until that stays the best; so often at most.
+# Where conditions hold only within round-off, it may still end next to the best point, depending on how a
+# machine rounds sums. It then restarts next to the best point that it found, on the other side, with steps of
+# this part, until that point stays the best; at most so often.
 _CLOSER, _BEGUN = 0.25, 3
 # Designs that Optuna draws before it learns from them.
 _AT_RANDOM = 8
@@ -37,7 +37,7 @@ Variables = Sequence[Distribution | Choice]
 
 @dataclass(frozen=True)
 class Outcome:
-    """What a run is worth: its objective, and how much each condition is missed by (0 or less: it holds)."""
+    """The value of a run: its objective, and how much each condition is missed by (0 or less: it holds)."""
 
     objective: float
     margins: tuple[float, ...]

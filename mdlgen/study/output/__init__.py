@@ -1,1 +1,1 @@
-"""What a study leaves: its page, and designs as options or a piece of a scene."""
+"""The output of a study: its page, and designs as options or a piece of a scene."""

@@ -42,8 +42,8 @@ def page(
 ) -> str:
     """The page of a study in `folder`; `columns` are those of its table, `found` its findings.
 
-    Of an optimisation `objective` is the column that is to be small, `best` the best row, and `met` says of
-    each row whether its conditions hold. Every name and text is escaped.
+    For an optimisation `objective` is the column to minimise, `best` the best row, and `met` is true for rows
+    whose conditions hold. Every name and text is escaped.
     """
     rows = sorted(rows, key=lambda row: row.index)
     drawn = rows[:MOST_DRAWN]
@@ -105,7 +105,7 @@ def _link(folder: Path, row: CaseRow) -> str:
 
 
 def _command(folder: Path, task: Task, row: CaseRow) -> str:
-    """What shows the run of a case: the page of one that has been kept, or the run itself."""
+    """The command that shows the run of a case: the page of a stored run, or the run itself."""
     case = Case(row.index, row.values)
     place = folder / case.name
     if (place / _STATES).is_file():

@@ -1,1 +1,1 @@
-"""What a text must say of a Model, from its tables alone: a file for each kind of entity."""
+"""Expected content of an MDL file for a Model, from its tables alone: a file for each kind of entity."""

@@ -1,4 +1,4 @@
-"""What a text must say of the shape of a sheet that is not flat."""
+"""Expected content of an MDL file for the shape of a sheet that is not flat."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What a text must say of the boxes and joints of a sheet that are not all alike, class by class."""
+"""Expected content of an MDL file for unequal boxes and joints of a sheet, class by class."""
 
 from __future__ import annotations
 
@@ -89,7 +89,7 @@ def _joints(model: Model, index: int) -> dict[str, float]:
 
 
 def _widened(sheet: SheetPart, c: JointClass, one: int) -> Floats:
-    """What a text has in times the values of a class, (6,): a joint that twists has half a box more for each
+    """Factors of an MDL file on the values of a class, (6,): a joint that twists has half a box more for each
     side of its boxes that is the sheet's own and not clamped."""
     times = np.ones(6)
     if sheet.twist:
@@ -160,7 +160,7 @@ def _as_written(
 def _sheared(
     sheet: SheetPart, given: dict[str, float], found: dict[str, float], along_x: bool
 ) -> dict[str, float]:
-    """The text shows Eqs. 5 and 6 of a joint of a plate both, and its shear beside the one it replaces."""
+    """The MDL file shows both Eqs. 5 and 6 of a joint of a plate, and its shear next to the replaced one."""
     name, modulus, shape = "y", "E_cd", found["d_x"] / found["d_y"]
     if not along_x:
         name, modulus, shape = "x", "E_md", 1 / shape

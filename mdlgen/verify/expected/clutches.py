@@ -38,8 +38,8 @@ def clutches(model: Model, times: Times) -> Table:
 
 
 def _law(roller: RollerPart, way: OneWay, times: tuple[float, ...]) -> tuple[np.ndarray, np.ndarray]:
-    """2 torque s^2 / (1 + s) of the speed s against the free sense, in times the creep; and the size of the
-    speeds whose difference s is."""
+    """2 torque s^2 / (1 + s) of the speed s against the free sense, relative to the creep; and the size of
+    the speeds whose difference s is."""
     shaft = np.zeros(len(times))
     if roller.speed is not None:
         shaft = roller.prescribed(np.array(times) / SECOND) / SECOND

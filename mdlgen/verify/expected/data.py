@@ -77,7 +77,7 @@ def data(model: Model) -> Table:
 
 
 def _factor(model: Model, support: Anchor) -> float:
-    """Stiffness of a support in times k_z of its sheet: its bushings act side by side."""
+    """Stiffness of a support relative to k_z of its sheet: its bushings act side by side."""
     mine = [k for k, name in enumerate(model.bushings.name) if name.rpartition("_")[0] == support.name]
     return float(model.bushings.k[mine, :3].sum(axis=0).max() / model.sheets[support.sheet].derived["k_z"])
 

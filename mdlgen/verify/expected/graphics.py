@@ -1,4 +1,4 @@
-"""What a text must show: boxes and surfaces; cylinders and meshes are with the parts that they show."""
+"""Expected graphics: boxes and surfaces; cylinders and meshes are with the parts that they show."""
 
 from __future__ import annotations
 

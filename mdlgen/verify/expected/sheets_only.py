@@ -15,7 +15,7 @@ MACHINE_KINDS = ("springs", "cylinders", "motions", "run", "gravity", "units", "
 
 
 def of_sheets(said: dict[str, Table], model: Model, own_machine: bool) -> dict[str, Table]:
-    """What must be said of the sheets; with `own_machine` the parts they touch may have any name."""
+    """The expected tables of the sheets; with `own_machine` the parts they touch may have any name."""
     machine, unused = _machine(model), _unused(model)
     kept = {
         kind: table.only(lambda name: name.partition(".")[0] not in machine and name not in unused)

@@ -13,7 +13,7 @@ KG, SECOND = 1e-3, 1e-3  # of a gram, of a millisecond
 
 
 def body_name(model: Model, body: int) -> str:
-    """Of a body in the text."""
+    """Name of a body in the MDL file."""
     return "B_Ground" if body == GROUND else f"b_{model.bodies.name[body]}"
 
 

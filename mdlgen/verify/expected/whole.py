@@ -1,4 +1,4 @@
-"""What a text must say of a Model, made from its tables and from nothing else, in the units of the text.
+"""Expected content of an MDL file for a Model, from its tables and nothing else, in the units of the file.
 
 Names follow the promise of the text: `b_` body, `p_` point, `bsh_` bushing, `gbox_`, `gcyl_`, `gcad_`
 graphic, `j_` joint, `mot_` motion, `cs_` spring, `con_` contact, `m_` marker, `o_` output, `ds_` data set.

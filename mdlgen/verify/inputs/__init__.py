@@ -1,1 +1,1 @@
-"""What is verified: a scene, the files that were given, and what of them is the scene's."""
+"""The inputs of a verification: a scene, the files that were given, and the scene's part of them."""

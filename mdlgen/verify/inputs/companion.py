@@ -1,4 +1,4 @@
-"""Which script goes with a text, and whether it is for the systems that the text has."""
+"""Finds the script that belongs to an MDL file, and checks that it is for the systems in the file."""
 
 from __future__ import annotations
 
@@ -12,7 +12,8 @@ from mdlgen.verify.readback import script
 
 
 def beside(text: Path, scope: Scope) -> tuple[File | None, list[Path]]:
-    """The script beside a text, or beside the file of its sheets; and what was looked for."""
+    """The script in the folder of an MDL file, or of the file of its sheets; and the paths that were
+    tried."""
     looked = [_script_of(text), *(_script_of(Path(file)) for file in sorted(scope.files))]
     looked = list(dict.fromkeys(looked))
     return next((File.read(path) for path in looked if path.is_file()), None), looked

@@ -1,4 +1,5 @@
-"""What of a text is the scene's: all of a model; in a host the definitions of the sheets, and their file."""
+"""The scene's part of an MDL file: all of a model; in a host the definitions of the sheets, and their
+file."""
 
 from __future__ import annotations
 
@@ -20,13 +21,13 @@ class Scope:
         self._lines = _lines(reading, definitions) if definitions is not None else {}
 
     def holds(self, place: Place) -> bool:
-        """Whether what stands at a place is the scene's."""
+        """True if the statement at a place is the scene's."""
         if self.definitions is None or place.file in self.files:
             return True
         return any(first <= place.line <= last for first, last in self._lines.get(place.file, ()))
 
     def has(self, rest: Any) -> bool:
-        """Whether a statement is the scene's, or sets something of it from outside."""
+        """True if a statement is the scene's, or sets something of it from outside."""
         about = rest.about or ""
         return any(about.startswith(i) for i in self.instances) or self.holds(rest.statement.place())
 

@@ -1,4 +1,4 @@
-"""What is verified: a scene, whole or its sheets alone, and the files given in place of mdlgen's own."""
+"""The subject of a verification: a scene, whole or its sheets alone, and files in place of mdlgen's own."""
 
 from __future__ import annotations
 
@@ -52,7 +52,7 @@ class Read:
 
     @property
     def has_numbers(self) -> bool:
-        """Whether the text itself gives contacts their numbers."""
+        """True if the MDL file itself gives contacts their numbers."""
         return any("penalty" in record for record in self.values["contacts"].values())
 
     @cached_property
@@ -90,7 +90,7 @@ class Subject:
         self.times = stations(model)
 
     def said(self, model: Model | None = None) -> dict[str, Table]:
-        """What must be said of a Model."""
+        """The expected tables of a Model."""
         model = model or self.model
         rows = contacts(model)
         said = expected(model, self.times) | {"data": data(model), "contacts": rows, "masters": masters(rows)}

@@ -1,9 +1,9 @@
-"""The values that a text can be changed by: each with what it must make of the Model.
+"""The values of an MDL file that can be changed: each with the change of the Model that it must cause.
 
-The spec leaves values out that the text has to write (a second ratio of damping, the speeds of friction);
-and two sheets may share a material while the text gives each its own. So the scene is pinned first: what is
-left out is written as what it stands for. Which boxes may touch what, and where a pressed roller or plate
-begins, is in the text as it was found for the scene as written; it stays so here, too.
+The spec leaves out values that the file has to write (a second ratio of damping, the speeds of friction). Two
+sheets may also share a material while the file gives each its own. So the scene is pinned first: values that
+are left out are written with their defaults. The pairs of boxes that may touch, and the start of a pressed
+roller or plate, are in the file as they were found for the scene as written; they stay so here, too.
 """
 
 from __future__ import annotations

@@ -98,7 +98,8 @@ def with_value(owner: Any, path: Path, value: float) -> Any:
 
 
 def along_lines(scene: Scene, base: Scene, name: str) -> Scene:
-    """Clamp and zones go with the lines between boxes: the text has the one in cells, the other in shares."""
+    """Clamp and zones follow the lines between boxes: the MDL file has the clamp in cells, zones in
+    shares."""
     before, sheet = base.sheets[name], scene.sheets[name]
     lines = list(zip(before.lines, sheet.lines, strict=True))
 

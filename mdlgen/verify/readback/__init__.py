@@ -1,1 +1,1 @@
-"""What a text, its script or a deck says, as tables like those that are expected."""
+"""Reads an MDL file, its script or a deck back, as tables like the expected ones."""

@@ -33,7 +33,7 @@ class Followed(NamedTuple):
 
 
 class Script(NamedTuple):
-    """What a script sets: numbers by contact."""
+    """The numbers that a script sets, by contact."""
 
     contacts: dict[str, dict[str, float | Followed]]
     rest: str  # its statements without the data, in a normal form
@@ -56,7 +56,7 @@ class Script(NamedTuple):
 
     @property
     def follows(self) -> bool:
-        """Whether some number follows a value of the model."""
+        """True if some number follows a value of the model."""
         return any(isinstance(v, Followed) for numbers in self.contacts.values() for v in numbers.values())
 
 

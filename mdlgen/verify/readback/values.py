@@ -36,7 +36,7 @@ _CONTACT_ATTRIBUTES = {
     "stiction_trans_vel": "stiction_velocity",
     "friction_trans_vel": "friction_velocity",
 }
-# Of the commands that say how a model is run: attribute -> what it is here.
+# Attributes of the commands that control a run: attribute -> its name here.
 _RUN_ATTRIBUTES = {
     "Simulate": {"analysis_type": "analysis", "end_time": "end", "print_interval": "print"},
     "Param_Transient": {
@@ -279,7 +279,7 @@ def commanded(values: Values) -> dict[str, dict[str, float]]:
 
 
 def master_table(values: Values) -> Table:
-    """Which side of each contact is the master, of a deck or of the solver commands of a text."""
+    """The master side of each contact, of a deck or of the solver commands of an MDL file."""
     sides = {name: record.get("master", "") for name, record in values.get("contacts", {}).items()}
     for command in (c for commands in values.get("commands", {}).values() for c in commands):
         if command["command"] == "Force_Contact":
@@ -288,8 +288,8 @@ def master_table(values: Values) -> Table:
 
 
 def contact_outputs_of(values: Values) -> dict[str, list[list[tuple[str, ...]]]]:
-    """What of the outputs of a text is of contacts: of each component the terms, as contact, side, component
-    and frame."""
+    """The outputs of an MDL file that record contacts: for each component the terms, as contact, side,
+    component and frame."""
     found: dict[str, list[list[tuple[str, ...]]]] = {}
     for name, record in values.get("outputs", {}).items():
         if not _of_contacts(record):
@@ -309,7 +309,7 @@ def _of_contacts(record: Mapping[str, Any]) -> bool:
 
 
 def contact_output_table(values: Values) -> Table:
-    """Of each component of what is recorded of contacts: contact, side, component and frame of each term."""
+    """Recorded components of contacts: contact, side, component and frame of each term."""
     recorded = {**contact_outputs_of(values), **values.get("contact outputs", {})}
     found = {
         f"{name}.{key}": tuple(sorted(" ".join(term) for term in terms))

@@ -1,1 +1,1 @@
-"""What of a text or a deck no number shows: statements, labels, keywords, elements."""
+"""Checks of an MDL file or a deck beyond its numbers: statements, labels, keywords, elements."""

@@ -1,4 +1,4 @@
-"""What a deck says beside the numbers of the Model: against the deck that mdlgen writes."""
+"""Elements of a deck apart from the numbers of the Model: against the deck that mdlgen writes."""
 
 from __future__ import annotations
 

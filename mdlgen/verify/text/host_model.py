@@ -1,4 +1,4 @@
-"""What a model of the user does with the sheets in it: its own business, but worth a note."""
+"""Notes on the use of the sheets in a user's model, which is allowed but worth a note."""
 
 from __future__ import annotations
 

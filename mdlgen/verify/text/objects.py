@@ -1,4 +1,4 @@
-"""What a script for MotionSolve makes beside the numbers of the Model: against the script of mdlgen."""
+"""Objects of a MotionSolve script apart from the numbers of the Model: against the script of mdlgen."""
 
 from __future__ import annotations
 

@@ -19,7 +19,7 @@ _MOST_NOTES = 5
 
 
 def unaccounted(mine: Any, given: Any, scope: Scope) -> Iterator[Difference]:
-    """What a given text has more, or less, than the text `mine` that mdlgen writes."""
+    """Statements that a given MDL file has more, or less, than the text `mine` that mdlgen writes."""
     due = Counter(rest.key for rest in mine.remainder())
     for rest in given.remainder():
         if due[rest.key]:
@@ -36,7 +36,7 @@ def unaccounted(mine: Any, given: Any, scope: Scope) -> Iterator[Difference]:
 
 
 def remarks(given: Any, scope: Scope, found: Verification) -> None:
-    """What lint says of a given text: of the sheets it counts, of a host only an error does."""
+    """Findings of lint in a given MDL file: those in the sheets count, of a host only errors do."""
     notes = []
     for finding in given.report.findings:
         mine = scope.holds(finding.place)

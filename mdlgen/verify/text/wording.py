@@ -17,7 +17,7 @@ _SOLVER_TEXT = {"value", "variable", "expressions", "text"}
 
 
 def wording(own: Values, given: Values, leave: frozenset[str] = frozenset()) -> Iterator[Difference]:
-    """What differs but for numbers; `leave` are fields of contacts that may be anything."""
+    """Differences apart from numbers; `leave` are fields of contacts that may be anything."""
     for kind, records in own.items():
         if kind == "commands":
             yield from _commands(records, given[kind])
@@ -37,7 +37,7 @@ def wording(own: Values, given: Values, leave: frozenset[str] = frozenset()) -> 
 
 
 def _commands(own: Mapping[str, Any], given: Mapping[str, Any]) -> Iterator[Difference]:
-    """What a template writes otherwise, to the numbers."""
+    """Differences in the text of templates, apart from numbers."""
     for name in {**own, **given}:
         mine, theirs = own.get(name, ()), given.get(name, ())
         words = [(m.get("command"), t.get("command")) for m, t in zip_longest(mine, theirs, fillvalue={})]

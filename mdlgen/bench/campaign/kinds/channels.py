@@ -15,7 +15,7 @@ SMOOTH = 0.5
 
 
 def _paper(draw: Draw) -> Drawn:
-    """What a channel leads: paper, and board where the radius is large."""
+    """A sheet for a channel: paper, and board where the radius is large."""
     return transported(draw, most=200, stock=draw.of("paper", "paper", "paper", "board"))
 
 

@@ -24,7 +24,7 @@ NO_LIMITS = "run.prune=false"
 
 COUNTS = ((2, (3, 4)), (5, (3, 4)), (10, (2, 2)), (20, (2, 2)), (50, (1, 1)))  # of sheets, and of boxes
 STEPS = (1.0, 0.1, 0.01, 0.001)  # [ms]
-SOFT = 20.0  # [N/mm^1.5]: what rests on it swings slowly enough for the longest of these steps
+SOFT = 20.0  # [N/mm^1.5]: sheets on it swing slowly enough for the longest of these steps
 HEAVY = 100.0  # times the mass of the others
 GAP = 0.2  # [mm] between sheets that fall on each other or are struck
 THROWN, STRUCK = 0.3, 0.1  # [mm/ms]
@@ -245,8 +245,8 @@ def _kept(result: Result, through: float) -> list[Finding]:
 
 
 def rests(result: Result, _: Result | None, fallen: float = 0.0) -> list[Finding]:
-    """At the end the floor bears the weight, the uppermost sheet is where it is pressed to, and nothing
-    moves. What fell by `fallen` each did so by g t^2/2 until the first of them struck."""
+    """At the end the floor bears the weight, the uppermost sheet is at its pressed place, and nothing moves.
+    A sheet that fell by `fallen` did so by g t^2/2 until the first of them struck."""
     place, rate, mass = _sheets(result)
     late = result.time >= 0.75 * result.time[-1]
     weight, sunk = GRAVITY * mass.sum(), float(_sunk(result.model, mass)[-1])

@@ -92,7 +92,7 @@ def _hollow() -> BenchCase:
 
 def _web(hardness: float) -> BenchCase:
     """Two driven nips of driven rollers, the second one a little faster."""
-    radius, step = ROUND, 0.05 if hardness < 1e4 else 0.01  # what is hard claps as the web is let into it
+    radius, step = ROUND, 0.05 if hardness < 1e4 else 0.01  # a hard one chatters as the web enters
     sheet = (
         f"{{web: {{material: p, size: [140 mm, {WEB} mm], thickness: {THICK} mm, mass: 0.25 g,"
         f" boxes: [{28 * FINER}, 1], layout: plate, center: [-20 mm, 0 mm, 0 mm],"

@@ -12,7 +12,7 @@ from mdlgen.bench.oracles import elastica, loaded
 from mdlgen.bench.suites.validation.rows import Basis, against, row
 from mdlgen.results.result import Result
 
-# Of the sample cantilever: a note held at y_min.
+# Values of the sample cantilever: a note held at y_min.
 LENGTH, WIDTH, MASS, BENDING = 127.0, 67.0, 0.72, 0.242  # [mm], [mm], [g], [N mm]
 GRAVITY = 9.81e-3  # [mm/ms^2]
 ROWS = 40

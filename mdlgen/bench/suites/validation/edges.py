@@ -165,7 +165,7 @@ class Sag:
 
 @dataclass(frozen=True)
 class Met:
-    """Whether a leading edge stubs: it climbs a round up to a depth of r (1 - cos(90 deg - atan mu))."""
+    """Checks if a leading edge stubs: it climbs a round up to a depth of r (1 - cos(90 deg - atan mu))."""
 
     below: float  # [mm]
     friction: float

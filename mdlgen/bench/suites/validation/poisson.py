@@ -123,7 +123,7 @@ def lifts(size: tuple[float, float], result: Result, _: Result | None) -> list[F
 
 
 def contracts(name: str, result: Result, _: Result | None) -> list[Finding]:
-    """What the middle third does along x, and across it."""
+    """Strain and bending of the middle third along x, and across it."""
     joints, measured = sheet_joints(result.model), histories(result, np.array([len(result.time) - 1]))
     assert measured is not None, "a sheet of many boxes has joints"
     stretch, bend = measured[1:]

@@ -18,7 +18,7 @@ NONE = "gravity=[0 m/s^2, 0 m/s^2, 0 m/s^2]"
 # A bar whose equivalent length 2 L/3 + s^2/(6 L) is 1 m, as the point mass of the benchmark has it.
 BAR, THICK = 1499.9998333, 1.0  # [mm]
 A01 = (275.087463, -961.419205)  # where the mass is after 10 s [mm]
-MULTIBODY = "IFToMM benchmark library of multibody dynamics, A01 (simple pendulum, 1 m, let go level)"
+MULTIBODY = "IFToMM benchmark library of multibody dynamics, A01 (simple pendulum, 1 m, released level)"
 JACOBI = "sin(angle/2) = sin(start/2) cd(sqrt(g/l) t): Jacobi's functions"
 SPIN = (0.037, 8e-4, 3e-4)  # of the tumbling block [rad/ms]
 EULER = "Euler's equations by DOP853 to 1e-12"
@@ -33,7 +33,7 @@ def cases(quick: bool) -> list[BenchCase]:
 
 
 def _pendulum(start: float, seconds: float) -> BenchCase:
-    """A bar that is hinged at one end and let go at an angle [deg] from the lowest point."""
+    """A bar that is hinged at one end and released at an angle [deg] from the lowest point."""
     hinge = (
         f"[{{sheet: block, at: [{-BAR / 2!r} mm, -40 mm], fix: [x, y, z]}},"
         f" {{sheet: block, at: [{-BAR / 2!r} mm, 40 mm], fix: [x, z]}}]"
@@ -53,7 +53,7 @@ def _pendulum(start: float, seconds: float) -> BenchCase:
         f"run.duration={seconds} s",
         "run.print_step=10 ms",
     )
-    name = f"pendulum of 1 m, let go at {start:g} deg"
+    name = f"pendulum of 1 m, released at {start:g} deg"
     return row("Rigid bodies", name, Run("verify/flip", sets), Swung(start))
 
 

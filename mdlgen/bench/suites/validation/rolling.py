@@ -122,7 +122,7 @@ def _skew() -> BenchCase:
 
 
 def force_in_nip(stiffness: float) -> float:
-    """Of the pressed roller on the note [N]: what the spring has where the forces agree."""
+    """Force of the pressed roller on the note [N]: that of the spring where the forces agree."""
     from scipy.optimize import root_scalar
 
     def missing(force: float) -> float:

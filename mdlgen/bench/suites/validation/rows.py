@@ -1,4 +1,4 @@
-"""What a row of the validation is made of."""
+"""Constructors for rows of the validation."""
 
 from __future__ import annotations
 
@@ -30,7 +30,7 @@ def against(
     basis: Basis,
     over: float | None = None,
 ) -> Finding:
-    """What was found against what is expected; the error is relative to it, or to `over`."""
+    """The measured against the expected value; the error is relative to the expected one, or to `over`."""
     error = abs(found - expected) / abs(expected if over is None else over)
     return Finding(
         quantity,

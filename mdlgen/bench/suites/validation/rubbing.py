@@ -70,7 +70,7 @@ def _pressure(mass: float) -> BenchCase:
 
 
 def _pressure_of(mass: float) -> float:
-    """Of the block of verify/slide [MPa]."""
+    """Pressure under the block of verify/slide [MPa]."""
     return mass * GRAVITY / 400.0
 
 

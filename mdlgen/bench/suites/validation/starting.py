@@ -1,4 +1,4 @@
-"""What begins with a speed or changes over time: a roller that spins, a ramp of force, gravity cut off."""
+"""Cases with an initial speed or a change over time: a spinning roller, a ramp of force, gravity cut off."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from mdlgen.results.result import Result
 
 GROUP = "Starts, and forces over time"
 NONE = "gravity=[0 m/s^2, 0 m/s^2, 0 m/s^2]"
-# Of verify/spun: mass of roller and block [g], speed of the roller's surface [mm/ms].
+# Values of verify/spun: mass of roller and block [g], speed of the roller's surface [mm/ms].
 ROLLER, BLOCK, SURFACE = 4.0, 1.0, 0.5
 SPUN = "momentum and spin: omega R M/(M + 2 m)"
 RUBS = "smoothed friction has equal speeds at the end only, to e^(-t/tau): less than 0.1 %"

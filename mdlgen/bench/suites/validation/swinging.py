@@ -38,7 +38,7 @@ def cases(quick: bool) -> list[BenchCase]:
 
 def _swing(rows: int) -> BenchCase:
     run = Run("cantilever", (f"sheets.note.boxes=[1,{rows}]", *SETS))
-    return row("Vibration of a cantilever", f"strip let go flat, {rows} rows", run, modes)
+    return row("Vibration of a cantilever", f"strip released flat, {rows} rows", run, modes)
 
 
 def modes(result: Result, _: Result | None) -> list[Finding]:

@@ -36,7 +36,7 @@ def cases(quick: bool) -> list[BenchCase]:
 
 
 def swing_sets(share: float) -> tuple[str, ...]:
-    """Of the box that swings on its hinge."""
+    """The settings of the box that swings on its hinge."""
     return (
         NONE,
         f"materials.eur10.yield={{curvature: {CURVATURE} 1/mm, hardening: {share}}}",
@@ -90,7 +90,7 @@ class Swung:
 
 
 def crease_sets(rows: int) -> tuple[str, ...]:
-    """Of the strip with a crease in its middle."""
+    """The settings of the strip with a crease in its middle."""
     return (
         NONE,
         f"sheets.note.size=[10 mm, {LENGTH} mm]",

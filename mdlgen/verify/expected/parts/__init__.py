@@ -1,1 +1,1 @@
-"""What a text must say of each kind of part of the machine, a file for each."""
+"""Expected content of an MDL file for each kind of part of the machine, a file for each."""

@@ -1,6 +1,7 @@
-"""What a text must say of a part of the machine, by entity. Lengths in mm, places and axes global.
+"""Expected content of an MDL file for a part of the machine, by entity. Lengths in mm, places and axes
+global.
 
-A new kind is a file beside this one, called as one is.
+A new kind is a file in this folder with the name of the kind.
 """
 
 from __future__ import annotations
@@ -111,11 +112,11 @@ class Kind(Generic[P]):
         return ()
 
     def data(self, model: Model, part: P) -> dict[str, float]:
-        """What the text computes, by member of the part's data set."""
+        """The values that the MDL file computes, by member of the part's data set."""
         return {}
 
     def tables(self, model: Model) -> dict[str, Table]:
-        """Of what shows parts of this kind alone, by what the read-back calls it."""
+        """Tables of entities that only parts of this kind have, by the name in the read-back."""
         return {}
 
     def graphics(self, part: P, side: Side) -> list[str]:
@@ -123,7 +124,7 @@ class Kind(Generic[P]):
         raise NotImplementedError
 
     def names(self, part: P) -> set[str]:
-        """What in a text is named after it, contacts aside."""
+        """The names of entities in an MDL file that derive from its name, without contacts."""
         return {f"{kind}_{part.name}" for kind in ("p", "b", "gbox", "gcyl", "j", "o", "ds")}
 
 

@@ -65,7 +65,7 @@ def meshes(model: Model) -> Table:
 
 
 def mesh_files(model: Model) -> Table:
-    """What a text says of files: moved and turned by nothing against their marker, and scaled to mm."""
+    """Expected transforms of mesh files: no shift or turn against their marker, and scaled to mm."""
     parts: dict[str, Part] = {
         "moved": (np.zeros((len(model.meshes), 6)), 1.0),
         "scale": (np.array([[m.scale] * 3 for m in model.meshes]).reshape(-1, 3), None),
@@ -74,7 +74,7 @@ def mesh_files(model: Model) -> Table:
 
 
 def mesh_shapes(model: Model) -> Table:
-    """What a deck says of meshes: counts, volume, its middle, least and greatest coordinates."""
+    """Expected shapes of meshes in a deck: counts, volume, its middle, least and greatest coordinates."""
     rows = [shape_numbers(m.corners, m.triangles) for m in model.meshes]
     scale = np.array([[1.0, 1.0, m.volume] + [float(np.abs(m.corners).max())] * 9 for m in model.meshes])
     parts: dict[str, Part] = {"shape": (np.array(rows).reshape(-1, 12), scale.reshape(-1, 12))}

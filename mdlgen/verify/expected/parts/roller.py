@@ -27,8 +27,8 @@ from mdlgen.verify.tables import Part, Table, table
 
 class _Rollers(Kind[RollerPart]):
     def bodies(self, model: Model, part: RollerPart) -> Iterator[Body]:
-        """A carrier is a solid ball of the roller's radius. Of an arm the inertia about its own axis counts;
-        the text gives it for all three."""
+        """A carrier is a solid ball of the roller's radius. For an arm the inertia about its own axis counts;
+        the MDL file gives it for all three."""
         if part.press is not None:
             ball = 0.4 * part.press.carrier_mass * part.radius**2
             place = model.bodies.position[part.body]
