@@ -11,7 +11,7 @@ from mdlgen.spec.motor import Motor
 from mdlgen.spec.quantities import default, quantity
 from mdlgen.spec.strict import Strict, fail
 
-# Ten starts and stops have 40. A solver stores them in the record of each body; an MDL file has one expression.
+# Ten starts and stops have 40. A solver stores them in the record of each body; an MDL file writes one sum.
 MOST_CORNERS = 64
 
 
