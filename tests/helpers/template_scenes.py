@@ -16,6 +16,15 @@ ROLLER = {
 DRIVE = {"speed": "100 rad/s"}
 
 
+MOTOR = {"torque": "3 N*mm", "speed": "200 rad/s", "inertia": "20 g*mm^2", "gear": 4}
+
+
+TABLE = {
+    "table": [["0 rad/s", "4 N*mm"], ["80 rad/s", "3 N*mm"], ["90 rad/s", "0 N*mm"]],
+    "voltage": [["0 ms", 0.5], ["2 ms", 1]],
+}
+
+
 PRESS = {"direction": "-z", "stiffness": "0.3 N/mm", "preload": "3 N"}
 
 
@@ -99,9 +108,16 @@ ROLLERS = _put(
             "drive": DRIVE | {"ramp": "5 ms"},
             "one_way": {"direction": -1, "torque": "2 N*mm", "creep": "3 rad/s"},
         },
+        "motor": ROLLER | {"drive": {"motor": MOTOR}, "bearing": {"torque": "1 N*mm"}},
+        "table": ROLLER | {"drive": {"motor": TABLE}},
+        "slips": ROLLER | {"limiter": {"torque": "6 N*mm"}, "drive": DRIVE},
+        "retards": ROLLER | {"limiter": {"torque": "6 N*mm"}, "bearing": {"drag": "2 N*mm*ms/rad"}},
         "stopped": ROLLER | {"drive": {"profile": [["1 ms", "90 rad/s"], ["2 ms", "-9 rad/s"]]}},
     },
 )
+
+
+SHAFT = _put("shafts", {"main": {"rollers": {"under": 2}, "drive": DRIVE}})
 
 
 PLANES = _put("planes", {"level": PLANE, "tilted": PLANE | {"normal": [0.6, 0, 0.8]}})
@@ -289,7 +305,7 @@ FOLLOWING = (
 
 
 PARTS: dict[str, dict[str, tuple[str, ...]]] = {
-    "model.mdl.j2": {"one of each": ONE_OF_EACH, "parameters": (*NAMED, *BLOCK)},
+    "model.mdl.j2": {"one of each": (*ONE_OF_EACH, SHAFT), "parameters": (*NAMED, *BLOCK)},
     "parameters.mdl.j2": {"values, formulas, one that nothing uses": NAMED},
     "system.mdl.j2": {"for a part of another model": PART, "for none": BLOCK, "parameters": (*NAMED, *BLOCK)},
     "banner.mdl.j2": {
@@ -353,6 +369,7 @@ PARTS: dict[str, dict[str, tuple[str, ...]]] = {
     "roller.mdl.j2": {
         "each kind": (ROLLERS,),
         "with a spin": (ONE_OF_EACH[0], "rollers.under.spin=10 rad/s"),
+        "on a shaft": (_put("rollers", {"under": ROLLER}), SHAFT),
     },
     "plane.mdl.j2": {"level, with a normal of its own": (PLANES,), "pressed": (PLATES_ON_SPRINGS,)},
     "guide.mdl.j2": {"straight and bent": (GUIDES,)},

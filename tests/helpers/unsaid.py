@@ -20,7 +20,5 @@ UNSAID: dict[str, tuple[str, ...]] = {
     "stream": ("streams={}", "require=[]"),
     "saddle": ("materials.film.poisson=0",),
     "rubber_nip": ("nips.feed.lower.cover=null", "nips.feed.lower.contact.stiffness=1000 N/mm^1.5"),
-    "retard": ("rollers.retard.limiter=null",),
-    "stall": ("rollers.pull.drive=null", "rollers.brake.bearing=null"),
     **dict.fromkeys(("verify/aslant", "aslant"), _MU),
 }

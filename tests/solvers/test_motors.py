@@ -13,7 +13,6 @@ from same import bits
 
 from mdlgen.backends.lattice import run as lattice
 from mdlgen.errors import RefusedError, SpecError
-from mdlgen.registry import emitter
 from mdlgen.results.io.store import hdf5
 from mdlgen.results.motors import axle_torque, lost_steps
 from mdlgen.results.result import GRIPS, RUBS
@@ -267,18 +266,3 @@ def test_what_cannot_be_is_said_in_one_line(override: str, where: str, what: str
     with pytest.raises(SpecError) as error:
         alone(override)
     assert where in str(error.value) and what in str(error.value) and "\n" not in str(error.value)
-
-
-@pytest.mark.parametrize(
-    ("overrides", "what"),
-    [
-        ([MOTOR], "the motor of feed"),
-        (["rollers.feed.limiter={torque: 1 N*mm}"], "the limiter of feed"),
-        (["rollers.feed.bearing={torque: 1 N*mm}"], "the bearing of feed"),
-        (["shafts={main: {rollers: {feed: 1, other: 2}}}"], "shaft main"),
-    ],
-)
-@pytest.mark.parametrize("output", ["motionview", "motionsolve", "msolve"])
-def test_no_text_says_them(overrides: list[str], what: str, output: str) -> None:
-    with pytest.raises(RefusedError, match=what):
-        emitter(output).emit(alone(*overrides))

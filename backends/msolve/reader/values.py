@@ -223,12 +223,12 @@ def _requests(objects: Objects, found: dict[str, Any]) -> None:
 
 
 def _forces(objects: Objects, found: dict[str, Any]) -> None:
-    """Loads with their numbers, and clutches with their torque as an expression."""
+    """Loads with their numbers; clutches, and other torques about axles, with an expression."""
     found["forces"], found["clutches"] = {}, {}
     for name, force in objects.of("Gforce"):
         given = force.given
         three = [tuple(given.get(f"{kind}{a}", "0") for a in "xyz") for kind in "ft"]
-        if name.endswith("_clutch"):
+        if name.endswith(("_clutch", "_axle")):
             torque = [_named(objects, text) for text in three[1]]
             ends = (on(force.i), label(force.i), label(force.rm))
             objects.put(found["clutches"], name, {"ends": ends, "force": three[0], "torque": torque})
