@@ -139,6 +139,11 @@ PLATES_ON_SPRINGS = _put(
 LINE = {"from": ["-9 mm", "0 mm", "1 mm"], "to": ["9 mm", "0 mm", "2 mm"], "axis": "y", "side": "left"}
 
 
+PIVOT = {"at": ["-9 mm", "0 mm", "0 mm"], "axis": "y"}
+PIVOT |= {"profile": [["1 ms", "0 deg"], ["2 ms", "20 deg"], ["4 ms", "-5 deg"]]}
+WAY = {"direction": [0.6, 0, 0.8], "profile": [["0 ms", "0 mm"]]}
+
+
 ARC = {"center": ["0 mm", "0 mm", "20 mm"], "radius": "20 mm", "from": "-90 deg", "to": "-84 deg"}
 
 
@@ -150,6 +155,12 @@ GUIDES = _put(
         "round": {"arc": ARC | {"axis": "y", "side": "outside"}, "width": "30 mm"},
         "thin": {"line": LINE | {"side": "both"}, "width": "30 mm", "thickness": "0.2 mm"},
     },
+)
+
+
+GATES = (
+    _put("guides", {"flap": {"line": LINE, "width": "30 mm", "pivot": PIVOT}}),
+    _put("planes", {"tilted": PLANE | {"normal": [0.6, 0, 0.8], "slide": WAY}}),
 )
 
 
@@ -371,9 +382,16 @@ PARTS: dict[str, dict[str, tuple[str, ...]]] = {
         "with a spin": (ONE_OF_EACH[0], "rollers.under.spin=10 rad/s"),
         "on a shaft": (_put("rollers", {"under": ROLLER}), SHAFT),
     },
-    "plane.mdl.j2": {"level, with a normal of its own": (PLANES,), "pressed": (PLATES_ON_SPRINGS,)},
-    "guide.mdl.j2": {"straight and bent": (GUIDES,)},
-    "mesh.mdl.j2": {"fixed, on a driven roller, on a pressed one": (ROLLERS, MESHES)},
+    "plane.mdl.j2": {
+        "level, with a normal of its own": (PLANES,),
+        "pressed": (PLATES_ON_SPRINGS,),
+        "on a slide": GATES[1:],
+    },
+    "guide.mdl.j2": {"straight and bent": (GUIDES,), "by a profile": GATES[:1]},
+    "mesh.mdl.j2": {
+        "fixed, on a driven roller, on a pressed one": (ROLLERS, MESHES),
+        "on a slide": (_put("meshes", {"wedge": MESH | {"slide": WAY}}),),
+    },
     "contacts.mdl.j2": {
         "a zone with its own friction": (*CONTACTS, *UNLIKE, "sheets.note.zones.stripe.friction=2"),
         "with and without friction": CONTACTS,

@@ -6,14 +6,12 @@ _MU = ("contacts.0.friction=0.25",)
 # by what a sample is called: its path below samples/, and its file
 UNSAID: dict[str, tuple[str, ...]] = {
     "landing": ("contacts.landing.air=null",),
-    "diverter": ("guides.gate.pivot=null",),
     "crease": ("materials.eur10.yield=null",),
     "register": ("rules=[]",),
     "sorter": (
         "rules=[]",
         "streams={}",
         "require=[]",
-        "guides.gate.pivot=null",
         "contacts.guides.between.0=note",
         "contacts.nip.between.0=note",
     ),

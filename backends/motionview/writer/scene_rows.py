@@ -54,6 +54,10 @@ class SceneView:
         return [part for part in self.machine if isinstance(part, PlaneView)]
 
     @property
+    def moved(self) -> list[GuideView | PlaneView | MeshView]:
+        return [*self.guides, *self.planes, *self.meshes]
+
+    @property
     def guides(self) -> list[GuideView]:
         return [part for part in self.machine if isinstance(part, GuideView)]
 

@@ -143,8 +143,8 @@ def _motion(motion: Thing) -> dict[str, Any]:
     return {
         "label": label(motion),
         "joint": label(motion.joint),
-        "freedom": {"ROTATION": "ROT"}[motion.jtype],
-        "quantity": {"VELOCITY": "VEL"}[motion.dtype],
+        "freedom": {"ROTATION": "ROT", "TRANSLATION": "TRANS"}[motion.jtype],
+        "quantity": {"VELOCITY": "VEL", "DISPLACEMENT": "DISP"}[motion.dtype],
         "type": "EXPR",
         "value": motion.function,
     }

@@ -48,3 +48,15 @@ def spins(model: Model) -> dict[str, Row]:
         for roller in model.rollers
         if roller.first_spin != 0.0
     }
+
+
+def moves(model: Model) -> dict[str, Table]:
+    """Axis and pivot, or direction, and the corners of the profile, of parts that move."""
+    found = {}
+    for part, motion in model.gates:
+        way: Table = {"along": row(motion.axis)}
+        if motion.turns:
+            way = {"about": row(motion.axis), "pivot": row(motion.pivot)}
+        corners = [[per_thousand(t), same(q)] for t, q in motion.corners[:, :2].tolist()]
+        found[part.name] = {**way, "corners": corners}
+    return found

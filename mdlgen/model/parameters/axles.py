@@ -1,4 +1,4 @@
-"""What the user gave of drives and shafts of prescribed speed, and of motors, bearings and torque limiters."""
+"""What the user gave of prescribed speeds, and of motors, bearings and torque limiters."""
 
 from __future__ import annotations
 

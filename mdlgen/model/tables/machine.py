@@ -203,7 +203,7 @@ class RollerPart(MachinePart):
 
     @property
     def first_spin(self) -> float:
-        """Its spin as the run begins, of one that a shaft may turn or not [rad/ms]: its own, or the shaft's."""
+        """Its spin as the run begins, where nothing prescribes it [rad/ms]: its own, or its shaft's."""
         return float(self.prescribed(0.0)) if self.begins_turning else self.spin
 
     @property
