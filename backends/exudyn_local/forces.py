@@ -14,11 +14,11 @@ from mdlgen.mechanics.arm import (
     torque_of,
     way_of,
 )
-from mdlgen.mechanics.axle import acting
+from mdlgen.mechanics.axle import AXLE, acting
 from mdlgen.mechanics.bushing import bushing
 from mdlgen.mechanics.corner import bodies_of, corner_forces
 from mdlgen.mechanics.curve import curve_excess, middle_and_gap
-from mdlgen.mechanics.driven import SENSE, turned
+from mdlgen.mechanics.driven import SENSE, TORQUE, turned
 from mdlgen.mechanics.frame import Frame
 from mdlgen.mechanics.gate import stop
 from mdlgen.mechanics.over_time import set_to
@@ -167,7 +167,16 @@ def load_forces(bodies, load, q, r, f, level):
 def axle_force(tables, body, at):
     """Torque of a clutch, a motor, a limiter or a bearing on a roller."""
     k, own = tables.bodies[body].spin, tables.bodies[body]
-    return acting(tables.shapes.axles, own, turned(own, at.t) - at.q[k], at.v[k], at.t, 0.0).torque
+    return acting(tables.shapes.axles, own, behind(tables, own, at), at.v[k], at.t, 0.0).torque
+
+
+@njit(cache=True, error_model="numpy")
+def behind(tables, body, at):
+    """By what angle a roller is behind its shaft, or what speed control has for that [rad]."""
+    angle = turned(body, at.t) - at.q[body.spin]
+    if body.clutch[SENSE] == AXLE:
+        angle -= tables.given_up[int(body.clutch[TORQUE])]
+    return angle
 
 
 @njit(cache=True, error_model="numpy")

@@ -6,7 +6,7 @@ import numpy as np
 
 from mdlgen.backends.exudyn_local.air import air_forces
 from mdlgen.backends.exudyn_local.bristles import held_energy, held_forces
-from mdlgen.backends.exudyn_local.forces import INSTANT, bush_forces, corner_at, pair_forces
+from mdlgen.backends.exudyn_local.forces import INSTANT, behind, bush_forces, corner_at, pair_forces
 from mdlgen.backends.exudyn_local.place import place_all
 from mdlgen.backends.exudyn_local.state import DRIVING, ELASTIC, HELD, KINETIC, LOST, POTENTIAL, WIDE
 from mdlgen.mechanics.arm import (
@@ -20,7 +20,7 @@ from mdlgen.mechanics.arm import (
     torque_of,
 )
 from mdlgen.mechanics.axle import acting
-from mdlgen.mechanics.driven import prescribed, turned
+from mdlgen.mechanics.driven import prescribed
 from mdlgen.mechanics.gate import GATE, power_of, stop
 from mdlgen.mechanics.over_time import set_to, weight_changes
 from mdlgen.mechanics.point import (
@@ -120,8 +120,8 @@ def ledger(tables, at, work, pair_out, totals):
         if bodies[body].spin >= 0:
             spun = v[bodies[body].spin]
             kinetic += 0.5 * bodies[body].press[AXIAL] * spun**2
-            behind = turned(bodies[body], t) - q[bodies[body].spin]
-            does = acting(tables.shapes.axles, bodies[body], behind, spun, t, 0.0)
+            lag = behind(tables, bodies[body], at)
+            does = acting(tables.shapes.axles, bodies[body], lag, spun, t, 0.0)
             lost += does.lost
             driven += does.given
     for i in range(tables.bushings.size):

@@ -5,7 +5,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from mdlgen.backends.exudyn_local.system import EULER, MS, System
+from mdlgen.backends.exudyn_local.system import EULER, System
 from mdlgen.mechanics.arm import (
     moved,
     turn_of,
@@ -23,7 +23,7 @@ from mdlgen.mechanics.vector import (
     three,
     vec,
 )
-from mdlgen.model.tables import Ints, Model
+from mdlgen.model.tables import Ints
 from mdlgen.program.kernel import njit
 
 
@@ -135,19 +135,6 @@ def spread(bodies, body, q, force, torque, f):
         f[bodies[body].slide] += dot(force, way_of(bodies[body], at)) + dot(torque, turn_of(bodies[body]))
     if bodies[body].spin >= 0:
         f[bodies[body].spin] += bodies[body].ratio * dot(torque, three(bodies[body].axis))
-
-
-def lags(model: Model, system: System, q: np.ndarray, t: float) -> np.ndarray:
-    """By what angles rollers with an axle are behind their shafts, in their order [rad], (axles,)."""
-    found = []
-    for roller in model.rollers:
-        if roller.axle is not None:
-            shaft = 0.0
-            if roller.speed is not None:
-                shaft = float(roller.turned(np.array([t / MS]))[0])
-            at = int(system.bodies["spin"][roller.body])
-            found.append(shaft - q[at] if at >= 0 else 0.0)
-    return np.array(found)
 
 
 @njit(cache=True, error_model="numpy")

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
-from mdlgen.backends.exudyn_local.place import lags
+from mdlgen.backends.exudyn_local.integrals import Integrals, lags
 from mdlgen.backends.exudyn_local.shipped import begin, end_hinges, ledger, overstretched, passed, set_limits
 from mdlgen.backends.exudyn_local.state import (
     DRIVING,
@@ -71,6 +71,7 @@ class Recorder:
         system.pairs["beside"] = 0  # a run before this one may have left its own
         for name in ("plastic", "begun", "lost"):
             system.hinges[name] = 0.0
+        self._integrals = Integrals(model, system)
         self._touched = np.zeros(len(system.pairs), bool)
         rows = len(model.contacts)
         self._max_depth, self._max_force = np.zeros(rows), np.zeros(rows)
@@ -110,6 +111,7 @@ class Recorder:
         if at is not None:  # what has left stays where it was seen last
             self._places[fresh], self._turns[fresh] = x[fresh], r[fresh]
         came = np.setdiff1d(self._boxes, np.flatnonzero(boxes))
+        system.given_up[:] = self.system.given_up
         self.system, self._tables, self._work = system, system.tables, workspace(system)
         self._gone, self._boxes = gone, np.flatnonzero(boxes)
         self._state, self._before = np.zeros((2, 2, max(1, system.free)))
@@ -153,8 +155,7 @@ class Recorder:
         """Exudyn's post-step function; False ends the run."""
         if t <= self.time:  # Exudyn also calls at the start
             return True
-        data = mbs.systemData
-        free = self.system.free
+        data, free = mbs.systemData, self.system.free
         self._q[:free] = data.GetODE2Coordinates(copy=False)
         self._v[:free] = data.GetODE2Coordinates_t(copy=False)
         self.steps += 1
@@ -162,6 +163,7 @@ class Recorder:
         if np.count_nonzero(np.isfinite(self._state)) < self._state.size:
             self.reason = f"the state went non-finite at {t / MS:.6g} ms (step {step / MS:.3g} ms)"
             return False
+        self._integrals.hold(self.system, self._q, self._v, t)
         self._observe(t)
         done = len(self._stored["t"]) - 1
         if done < len(self._due) and t >= self._due[done]:

@@ -8,7 +8,6 @@ from mdlgen.model.sheet_pairs import refuse_searched
 from mdlgen.model.sticking import refuse_sticking
 from mdlgen.model.still import refuse_moving
 from mdlgen.model.tables import BOX_BOX, Model
-from mdlgen.model.tables.axle import CONTROLLED
 from mdlgen.model.yielding import refuse_static_yield
 
 
@@ -18,13 +17,6 @@ def check(model: Model) -> None:
     refuse_sticking(model, "Exudyn", kinds=(BOX_BOX,))
     refuse_searched(model, "Exudyn")
     refuse_static_yield(model, "Exudyn")
-    for roller in model.rollers:
-        if roller.axle is not None and roller.axle.kind == CONTROLLED:
-            raise RefusedError(
-                f"Exudyn: the speed control of the motor of {roller.name} is not modelled: its integral is "
-                "held at its limits step by step; the lattice solver has it",
-                ("rollers", roller.name, "drive", "motor", "control"),
-            )
     refuse_moving(model, "Exudyn")
     refuse_with_passing(model)
 

@@ -40,6 +40,7 @@ class Tables(NamedTuple):
     stick: Sticking
     hinges: np.ndarray  # mechanics.plastic.HINGE, of the bushings that yield
     corners: np.ndarray
+    given_up: Floats  # of each axle, of the angle by which it is behind its shaft, see integrals.py [rad]
     changes: Changing  # loads and gravity over time, which are set to a time before they are read
 
 

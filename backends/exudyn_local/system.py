@@ -86,6 +86,7 @@ class System(NamedTuple):
     stick: Sticking
     hinges: np.ndarray  # mechanics.plastic.HINGE, in the order of Model.plastic [rad, N m]
     corners: np.ndarray  # mechanics.corner.CORNER
+    given_up: Floats  # of the angle of each axle, see integrals.py [rad]
     changes: Changing
 
     @property
@@ -103,6 +104,7 @@ class System(NamedTuple):
             stick=self.stick,
             hinges=self.hinges,
             corners=self.corners,
+            given_up=self.given_up,
             changes=self.changes,
         )
 
@@ -163,6 +165,7 @@ def build(model: Model, gone: NDArray[np.bool_] | None = None) -> tuple[System, 
         stick=stick,
         hinges=_hinges(model, bushings),
         corners=corners,
+        given_up=np.zeros(len(shapes.axles)),
         changes=changes,
     )
     return system, pattern

@@ -75,8 +75,8 @@ FORMS: dict[str, Form] = {
     ),
     "Motion": form(
         "motion_msapi.htm",
-        "label:text dtype:VELOCITY function:text",
-        "joint:Joint jtype:ROTATION",
+        "label:text dtype:VELOCITY|DISPLACEMENT function:text",
+        "joint:Joint jtype:ROTATION|TRANSLATION",
         needed="joint jtype dtype function",
     ),
     "Bushing": form(

@@ -1,32 +1,59 @@
-"""Motors, torque limiters, bearings and shafts, which no text says yet."""
+"""What texts have of motors, torque limiters and bearings, and which of them none can say."""
 
 from __future__ import annotations
 
+from itertools import pairwise
+
 from mdlgen.errors import RefusedError
-from mdlgen.model.tables import Model
-from mdlgen.model.tables.axle import FREE, LIMITER
+from mdlgen.model.tables import Floats, Model
+from mdlgen.model.tables.axle import CONTROLLED, STEPPER, AxlePart
+
+
+def with_rotors(model: Model) -> Floats:
+    """Inertia of all bodies of a Model, (n, 3) [g mm^2]; that of a roller about its axis with what turns with
+    it: the rotor of its motor, behind the gear."""
+    found = model.bodies.inertia.copy()
+    for roller in model.rollers:
+        if roller.axle is not None:
+            found[roller.body, 2] += roller.axle.inertia
+    return found
+
+
+def pieces(axle: AxlePart) -> list[tuple[float, float]]:
+    """Of a motor's curve: each speed, from 0 on, by which it is slower than without load [rad/ms], and by how
+    much its torque grows more with that from there on than before [N mm ms/rad]."""
+    slow, torque = axle.curve.T
+    slopes = ((torque[1:] - torque[:-1]) / (slow[1:] - slow[:-1])).tolist()
+    more = [slopes[0], *(b - a for a, b in pairwise(slopes))]
+    return list(zip(slow[:-1].tolist(), more, strict=True))
 
 
 def refuse_axles(model: Model, who: str) -> None:
-    """Raises RefusedError, by name and path, for a roller that a motor turns, or a limiter, a bearing or a
-    shaft acts on."""
+    """Raises RefusedError, by name and path, for a motor with speed control, a stepper, and a shaft that
+    couples rollers."""
     for roller in model.rollers:
-        axle, path = roller.axle, ("rollers", roller.name)
+        axle, path = roller.axle, ("rollers", roller.name, "drive", "motor")
         if roller.leader >= 0 or (axle is not None and axle.shaft):
             at = roller.leader if roller.leader >= 0 else roller.body
             leads = next(r for r in model.rollers if r.body == at)
             assert leads.axle is not None, "the one that leads has the shaft"
             raise RefusedError(
-                f"{who}: shaft {leads.axle.shaft}, which couples {roller.name} to other rollers, is not "
-                "written: no form of a coupler of joints is known; run it by mdlgen run",
+                f"{who}: shaft {leads.axle.shaft}, which couples {roller.name} to others by its torque, "
+                "is not written: Altair's pages and files contradict each other on the sign of a coupler's "
+                "ratio; give the shaft a prescribed speed, or run it by mdlgen run",
                 ("shafts", leads.axle.shaft),
             )
         if axle is None:
             continue
-        word, key = ("limiter", "limiter") if axle.kind == LIMITER else ("motor", "drive")
-        word, key = ("bearing", "bearing") if axle.kind == FREE else (word, key)
-        raise RefusedError(
-            f"{who}: the {word} of {roller.name} is not written: its torque over the speed is what the "
-            "solvers alone have; run it by mdlgen run",
-            (*path, key),
-        )
+        if axle.kind == CONTROLLED:
+            raise RefusedError(
+                f"{who}: the motor of {roller.name} has speed control, whose integral is held at its limits "
+                "from step to step: no expression says that; leave control out, or run it by mdlgen run",
+                (*path, "control"),
+            )
+        if axle.kind == STEPPER:
+            raise RefusedError(
+                f"{who}: the motor of {roller.name} is a stepper, whose torque follows its angle over many "
+                "turns: no page says how AZ continues beyond one; run it by mdlgen run",
+                (*path, "steps"),
+            )

@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import hashlib
 import math
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -105,15 +105,28 @@ def law(text: str, time: float) -> float:
     return _value(text, {"time": time, "pi": math.pi}, none)
 
 
-def torque(text: str, time: float, spin: float) -> float:
-    """Value of a clutch's expression at a time [s] and a spin about z [rad/s]. Raises Unreadable."""
+def torques(text: str, points: Sequence[tuple[float, float]]) -> list[float]:
+    """Values of the expression of a clutch, a motor, a limiter or a bearing at times [s] and spins about z
+    [rad/s]. Raises Unreadable."""
+    now = {"time": 0.0, "spin": 0.0}
 
     def measure(name: str, names: list[str]) -> float:
         if name != "WZ":
-            raise Unreadable(f"{name} in a clutch")
-        return spin
+            raise Unreadable(f"{name} in a torque over the spin")
+        return now["spin"]
 
-    return _value(text, {"time": time, "pi": math.pi}, measure)
+    value, found = _reader(text, measure), []
+    for now["time"], now["spin"] in points:
+        found.append(value({"time": now["time"], "pi": math.pi}))
+    return found
+
+
+def _step(x: float, x0: float, h0: float, x1: float, h1: float) -> float:
+    """The cubic from h0 at x0 to h1 at x1, level at both ends."""
+    if x1 == x0:
+        raise ValueError("STEP between two values that are the same")
+    s = min(max((x - x0) / (x1 - x0), 0.0), 1.0)
+    return h0 + (h1 - h0) * s * s * (3.0 - 2.0 * s)
 
 
 _MEASURES = tuple(f"{kind}{axis}" for kind in "DVW" for axis in "XYZ")
@@ -124,16 +137,17 @@ _FUNCTIONS = {
     "sqrt": Function(math.sqrt),
     "sin": Function(math.sin),
     "cos": Function(math.cos),
+    "step": Function(_step, 5, 5),
 }
 
 
 def _value(text: str, names: Mapping[str, float], measure: Callable[[str, list[str]], float]) -> float:
-    """The expression language of the solver is, for what is written here, that of Python."""
+    return _reader(text, measure)(names)
 
-    def named(name: str) -> float:
-        if name.lower() not in names:
-            raise Unreadable(f"{name[:80]} is not known in a solver expression")
-        return names[name.lower()]
+
+def _reader(text: str, measure: Callable[[str, list[str]], float]) -> Callable[[Mapping[str, float]], float]:
+    """Gives values of an expression for values of names. Its language is, for what is written here, that of
+    Python."""
 
     def measured(name: str) -> Callable[..., float]:
         return lambda *markers: measure(name, list(markers))
@@ -141,8 +155,25 @@ def _value(text: str, names: Mapping[str, float], measure: Callable[[str, list[s
     measures = {name.lower(): Function(measured(name), 1, 3, "names") for name in _MEASURES}
     grammar = Grammar(_FUNCTIONS | measures, "", folded=True, characters=_MOST, depth=100)
     try:
-        value = read(text, grammar).value(named)
+        expression = read(text, grammar)
     except ValueError as error:
-        raise Unreadable(f"{text[:80]} has no value ({error})"[:300]) from None
-    assert value is not None, "each name has a value"
+        raise _unreadable(text, error) from None
+
+    def value(names: Mapping[str, float]) -> float:
+        def named(name: str) -> float:
+            if name.lower() not in names:
+                raise Unreadable(f"{name[:80]} is not known in a solver expression")
+            return names[name.lower()]
+
+        try:
+            found = expression.value(named)
+        except ValueError as error:
+            raise _unreadable(text, error) from None
+        assert found is not None, "each name has a value"
+        return found
+
     return value
+
+
+def _unreadable(text: str, error: ValueError) -> Unreadable:
+    return Unreadable(f"{text[:80]} has no value ({error})"[:300])

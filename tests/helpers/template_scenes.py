@@ -16,6 +16,15 @@ ROLLER = {
 DRIVE = {"speed": "100 rad/s"}
 
 
+MOTOR = {"torque": "3 N*mm", "speed": "200 rad/s", "inertia": "20 g*mm^2", "gear": 4}
+
+
+TABLE = {
+    "table": [["0 rad/s", "4 N*mm"], ["80 rad/s", "3 N*mm"], ["90 rad/s", "0 N*mm"]],
+    "voltage": [["0 ms", 0.5], ["2 ms", 1]],
+}
+
+
 PRESS = {"direction": "-z", "stiffness": "0.3 N/mm", "preload": "3 N"}
 
 
@@ -99,9 +108,16 @@ ROLLERS = _put(
             "drive": DRIVE | {"ramp": "5 ms"},
             "one_way": {"direction": -1, "torque": "2 N*mm", "creep": "3 rad/s"},
         },
+        "motor": ROLLER | {"drive": {"motor": MOTOR}, "bearing": {"torque": "1 N*mm"}},
+        "table": ROLLER | {"drive": {"motor": TABLE}},
+        "slips": ROLLER | {"limiter": {"torque": "6 N*mm"}, "drive": DRIVE},
+        "retards": ROLLER | {"limiter": {"torque": "6 N*mm"}, "bearing": {"drag": "2 N*mm*ms/rad"}},
         "stopped": ROLLER | {"drive": {"profile": [["1 ms", "90 rad/s"], ["2 ms", "-9 rad/s"]]}},
     },
 )
+
+
+SHAFT = _put("shafts", {"main": {"rollers": {"under": 2}, "drive": DRIVE}})
 
 
 PLANES = _put("planes", {"level": PLANE, "tilted": PLANE | {"normal": [0.6, 0, 0.8]}})
@@ -123,6 +139,11 @@ PLATES_ON_SPRINGS = _put(
 LINE = {"from": ["-9 mm", "0 mm", "1 mm"], "to": ["9 mm", "0 mm", "2 mm"], "axis": "y", "side": "left"}
 
 
+PIVOT = {"at": ["-9 mm", "0 mm", "0 mm"], "axis": "y"}
+PIVOT |= {"profile": [["1 ms", "0 deg"], ["2 ms", "20 deg"], ["4 ms", "-5 deg"]]}
+WAY = {"direction": [0.6, 0, 0.8], "profile": [["0 ms", "0 mm"]]}
+
+
 ARC = {"center": ["0 mm", "0 mm", "20 mm"], "radius": "20 mm", "from": "-90 deg", "to": "-84 deg"}
 
 
@@ -134,6 +155,12 @@ GUIDES = _put(
         "round": {"arc": ARC | {"axis": "y", "side": "outside"}, "width": "30 mm"},
         "thin": {"line": LINE | {"side": "both"}, "width": "30 mm", "thickness": "0.2 mm"},
     },
+)
+
+
+GATES = (
+    _put("guides", {"flap": {"line": LINE, "width": "30 mm", "pivot": PIVOT}}),
+    _put("planes", {"tilted": PLANE | {"normal": [0.6, 0, 0.8], "slide": WAY}}),
 )
 
 
@@ -289,7 +316,7 @@ FOLLOWING = (
 
 
 PARTS: dict[str, dict[str, tuple[str, ...]]] = {
-    "model.mdl.j2": {"one of each": ONE_OF_EACH, "parameters": (*NAMED, *BLOCK)},
+    "model.mdl.j2": {"one of each": (*ONE_OF_EACH, SHAFT), "parameters": (*NAMED, *BLOCK)},
     "parameters.mdl.j2": {"values, formulas, one that nothing uses": NAMED},
     "system.mdl.j2": {"for a part of another model": PART, "for none": BLOCK, "parameters": (*NAMED, *BLOCK)},
     "banner.mdl.j2": {
@@ -353,10 +380,18 @@ PARTS: dict[str, dict[str, tuple[str, ...]]] = {
     "roller.mdl.j2": {
         "each kind": (ROLLERS,),
         "with a spin": (ONE_OF_EACH[0], "rollers.under.spin=10 rad/s"),
+        "on a shaft": (_put("rollers", {"under": ROLLER}), SHAFT),
     },
-    "plane.mdl.j2": {"level, with a normal of its own": (PLANES,), "pressed": (PLATES_ON_SPRINGS,)},
-    "guide.mdl.j2": {"straight and bent": (GUIDES,)},
-    "mesh.mdl.j2": {"fixed, on a driven roller, on a pressed one": (ROLLERS, MESHES)},
+    "plane.mdl.j2": {
+        "level, with a normal of its own": (PLANES,),
+        "pressed": (PLATES_ON_SPRINGS,),
+        "on a slide": GATES[1:],
+    },
+    "guide.mdl.j2": {"straight and bent": (GUIDES,), "by a profile": GATES[:1]},
+    "mesh.mdl.j2": {
+        "fixed, on a driven roller, on a pressed one": (ROLLERS, MESHES),
+        "on a slide": (_put("meshes", {"wedge": MESH | {"slide": WAY}}),),
+    },
     "contacts.mdl.j2": {
         "a zone with its own friction": (*CONTACTS, *UNLIKE, "sheets.note.zones.stripe.friction=2"),
         "with and without friction": CONTACTS,

@@ -6,21 +6,17 @@ _MU = ("contacts.0.friction=0.25",)
 # by what a sample is called: its path below samples/, and its file
 UNSAID: dict[str, tuple[str, ...]] = {
     "landing": ("contacts.landing.air=null",),
-    "diverter": ("guides.gate.pivot=null",),
     "crease": ("materials.eur10.yield=null",),
     "register": ("rules=[]",),
     "sorter": (
         "rules=[]",
         "streams={}",
         "require=[]",
-        "guides.gate.pivot=null",
         "contacts.guides.between.0=note",
         "contacts.nip.between.0=note",
     ),
     "stream": ("streams={}", "require=[]"),
     "saddle": ("materials.film.poisson=0",),
     "rubber_nip": ("nips.feed.lower.cover=null", "nips.feed.lower.contact.stiffness=1000 N/mm^1.5"),
-    "retard": ("rollers.retard.limiter=null",),
-    "stall": ("rollers.pull.drive=null", "rollers.brake.bearing=null"),
     **dict.fromkeys(("verify/aslant", "aslant"), _MU),
 }

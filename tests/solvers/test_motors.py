@@ -12,8 +12,7 @@ from ran import solved
 from same import bits
 
 from mdlgen.backends.lattice import run as lattice
-from mdlgen.errors import RefusedError, SpecError
-from mdlgen.registry import emitter
+from mdlgen.errors import SpecError
 from mdlgen.results.io.store import hdf5
 from mdlgen.results.motors import axle_torque, lost_steps
 from mdlgen.results.result import GRIPS, RUBS
@@ -160,17 +159,41 @@ CONTROL = (
 )
 
 
-def test_speed_control_takes_out_what_a_brake_leaves() -> None:
+@pytest.mark.parametrize("solver", SOLVERS)
+def test_speed_control_takes_out_what_a_brake_leaves(solver: str) -> None:
     """By the integral the speed is the target's; torque at first is at the limit, later that of the brake."""
     made = alone(CONTROL, "rollers.feed.bearing={torque: 5 N*mm}", "run.duration=60 ms", "run.step=0.5 ms")
-    result = solved(made, "lattice")
+    result = solved(made, solver)
     torque = axle_torque(result, made.roller("feed"))
     assert torque is not None and torque[0] == pytest.approx(20.0) and torque.max() <= 20.0
     assert spin(result, "feed")[-1] == pytest.approx(0.1, rel=1e-2)
     assert torque[-1] == pytest.approx(5.0, rel=1e-2)
     assert spin(result, "feed").max() < 0.1 * 1.001  # no wind-up, no overshoot
-    with pytest.raises(RefusedError, match="speed control of the motor of feed"):
-        solved(made, "exudyn")
+
+
+@pytest.mark.parametrize("solver", SOLVERS)
+def test_speed_control_answers_a_load_as_an_oscillator_of_its_gains(solver: str) -> None:
+    """Within its limits the error e of the speed follows J e'' + k_p e' + k_i e = 0: omega_n^2 = k_i/J,
+    zeta = k_p/(2 sqrt(k_i J)). A target that jumps to w and a brake M, both at 0: e = w, e' = (M - k_p w)/J.
+    An error is left of neither."""
+    gain, integral, target, brake = 200.0, 40.0, 0.05, 5.0
+    drive = (
+        f"rollers.feed.drive={{speed: 50 rad/s, motor: {{torque: 60 N*mm, speed: 1000 rad/s, "
+        f"control: {{proportional: {gain} N*mm*ms/rad, integral: {integral} N*mm/rad}}}}}}"
+    )
+    made = alone(drive, "rollers.feed.bearing={torque: 5 N*mm}", "run.duration=60 ms", "run.step=0.1 ms")
+    result = solved(made, solver)
+    natural, damping = np.sqrt(integral / FEED), gain / (2.0 * np.sqrt(integral * FEED))
+    assert damping == pytest.approx(0.5) and natural == pytest.approx(0.2)
+    fast, rate = natural * np.sqrt(1.0 - damping**2), (brake - gain * target) / FEED
+    t = result.time
+    wave = target * np.cos(fast * t) + (rate + damping * natural * target) / fast * np.sin(fast * t)
+    due = target - np.exp(-damping * natural * t) * wave
+    # exudyn misses half of the brake in the first step, see CREEP
+    off = np.abs(spin(result, "feed") - due)
+    assert off.max() < 0.5 * 0.1 * brake / FEED and off[t > 40.0].max() < 1e-4 * target
+    assert spin(result, "feed")[-1] == pytest.approx(target, rel=3e-3)
+    assert result.behind is not None and result.behind[-1, 0] == pytest.approx(brake / integral, rel=0.02)
 
 
 def test_the_error_of_speed_control_is_of_second_order() -> None:
@@ -267,18 +290,3 @@ def test_what_cannot_be_is_said_in_one_line(override: str, where: str, what: str
     with pytest.raises(SpecError) as error:
         alone(override)
     assert where in str(error.value) and what in str(error.value) and "\n" not in str(error.value)
-
-
-@pytest.mark.parametrize(
-    ("overrides", "what"),
-    [
-        ([MOTOR], "the motor of feed"),
-        (["rollers.feed.limiter={torque: 1 N*mm}"], "the limiter of feed"),
-        (["rollers.feed.bearing={torque: 1 N*mm}"], "the bearing of feed"),
-        (["shafts={main: {rollers: {feed: 1, other: 2}}}"], "shaft main"),
-    ],
-)
-@pytest.mark.parametrize("output", ["motionview", "motionsolve", "msolve"])
-def test_no_text_says_them(overrides: list[str], what: str, output: str) -> None:
-    with pytest.raises(RefusedError, match=what):
-        emitter(output).emit(alone(*overrides))

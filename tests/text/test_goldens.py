@@ -41,7 +41,8 @@ LOOPED = {
 MACHINE = ("rollers", "planes", "guides", "meshes")
 # Their text stands in the goldens of those that take them in.
 WITHIN = tuple(
-    f"{name}.mdl.j2" for name in ("bend", "cells", "contact_commands", "law", "lengths", "macros", "notes")
+    f"{name}.mdl.j2"
+    for name in ("bend", "cells", "contact_commands", "law", "lengths", "macros", "moving", "notes")
 )
 WITH_SET_CONTACT = ("contacts.mdl.j2",)
 

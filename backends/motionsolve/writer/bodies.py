@@ -5,6 +5,7 @@ from __future__ import annotations
 
 import numpy as np
 
+from mdlgen.altair.axles import with_rotors
 from mdlgen.backends.motionsolve.writer.axes import cosines
 from mdlgen.backends.motionsolve.writer.body import add_body
 from mdlgen.backends.motionsolve.writer.ids import GROUND_ID, body_id, graphic_id
@@ -34,7 +35,7 @@ def add_bodies(deck: Deck, model: Model) -> None:
     table = model.bodies
     positions, velocities = triples(table.position), _velocities(model)
     turns = [cosines(rotation) for rotation in table.rotation]
-    properties = zip(table.mass.tolist(), table.inertia.tolist(), table.half.tolist(), strict=True)
+    properties = zip(table.mass.tolist(), with_rotors(model).tolist(), table.half.tolist(), strict=True)
     held = table.fixed.tolist()
     for k, (mass, inertia, half) in enumerate(properties):
         name, label = f"b_{table.name[k]}", table.label[k]
@@ -52,8 +53,8 @@ def _velocities(model: Model) -> dict[int, tuple[str, ...]]:
     """Initial velocities of the free boxes of sheets that move, and of rollers that spin, global axes."""
     table, found = model.bodies, {}
     for roller in model.rollers:
-        if roller.spin != 0.0:
-            six = (0.0, 0.0, 0.0, *(roller.spin * roller.axis).tolist())
+        if roller.first_spin != 0.0:
+            six = (0.0, 0.0, 0.0, *(roller.first_spin * roller.axis).tolist())
             found[roller.body] = tuple(thousandfold(v) for v in six)
     for sheet in model.sheets:
         if np.any(sheet.velocity) or np.any(sheet.spin):

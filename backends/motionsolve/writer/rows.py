@@ -47,13 +47,15 @@ class Joint(NamedTuple):
 
 
 class Motion(NamedTuple):
-    """A prescribed angular velocity of a joint."""
+    """A prescribed velocity, or a displacement, of a joint."""
 
     name: str
     label: str
     id: int
     expression: str
     joint: int
+    of: str = "V"  # velocity, D: displacement
+    freedom: str = "R"  # rotation, T: translation
 
 
 class Bushing(NamedTuple):

@@ -87,11 +87,13 @@ UNVERIFIED = (
     ),
     Unverified(
         "a line of more than 528 characters, the longest that was seen",
-        "speeds with many corners, clutches, and loads over time; no page has a limit",
+        "speeds and motions with many corners, clutches, motors, limiters, and loads over time; no page has "
+        "a limit",
         "the end of the line in the panel of a motion or a force",
         lambda scene: (
-            any(r.corners > _LONG or r.free_sense for r in scene.rollers)
+            any(r.corners > _LONG or r.free_sense or r.axle for r in scene.rollers)
             or any(load.changes for load in scene.loads)
+            or any(part.moving and part.moving.corners > _LONG for part in scene.moved)
         ),
     ),
     Unverified(
@@ -129,7 +131,7 @@ DOCUMENTED = (
     Documented(
         "`*SetMotion( .., VEL, EXPR, .. )` (seen with `DISP`)",
         ("setmotion_single_motion_r.htm",),
-        lambda scene: any(r.driven and not r.free_sense for r in scene.rollers),
+        lambda scene: any(r.driven and not (r.free_sense or r.axle) for r in scene.rollers),
     ),
     Documented(
         "single `*CoilSpring`, `*SetCoilSpring` (seen as pairs)",

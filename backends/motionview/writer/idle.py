@@ -10,6 +10,7 @@ from collections.abc import Iterable, Sequence
 import numpy as np
 
 from mdlgen.formulas import names
+from mdlgen.model.parameters.axles import home_of
 from mdlgen.model.parameters.names import OF_USER
 from mdlgen.model.tables import Model
 
@@ -46,7 +47,7 @@ def idle_values(model: Model, numbers_by: str, kept: Sequence[int]) -> dict[tupl
         found |= {(f"{sheet.name}_zone_{zone.name}", "friction"): why for zone in sheet.zones}
     for roller in model.rollers:
         if roller.speed is not None and roller.profile is None and roller.ramp <= 0.0:
-            found[roller.name, "ramp"] = "the text has no ramp"
+            found[home_of(model, roller), "ramp"] = "the text has no ramp"
     found |= _rims(model, numbers_by, kept)
     if model.run.analysis == "static":
         found |= {("run", member): "the run is static" for member in ("end", "print", "h_max", "tol")}

@@ -15,6 +15,14 @@ from mdlgen.backends.motionview.writer.rows import Value
 from mdlgen.backends.motionview.writer.sheet_rows import LoadView, ProbeView, SheetView, SupportView
 
 
+class ShaftView(NamedTuple):
+    """Speed of a shaft that turns rollers."""
+
+    data_set: str
+    label: str
+    given: list[Value]
+
+
 @dataclass(frozen=True)
 class SceneView:
     """Everything that the main template loops over."""
@@ -28,6 +36,7 @@ class SceneView:
     supports: list[SupportView]
     loads: list[LoadView]
     machine: list[PartView]
+    shafts: list[ShaftView]
     contacts: list[ContactView]
     pairs: list[Pair]
     laws: list[LawView]  # of contacts whose numbers stand in solver commands
@@ -43,6 +52,10 @@ class SceneView:
     @property
     def planes(self) -> list[PlaneView]:
         return [part for part in self.machine if isinstance(part, PlaneView)]
+
+    @property
+    def moved(self) -> list[GuideView | PlaneView | MeshView]:
+        return [*self.guides, *self.planes, *self.meshes]
 
     @property
     def guides(self) -> list[GuideView]:

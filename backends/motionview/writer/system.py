@@ -36,6 +36,7 @@ def system_view(model: Model, set_contact: bool) -> SystemView:
         scene_view(model, set_contact),
         parameters=_used(model, given, of_sheets),
         machine=[],
+        shafts=[],
         contacts=contact_views(model, given, of_sheets),
         pairs=sheet_pairs(model),
         laws=[],

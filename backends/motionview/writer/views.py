@@ -12,9 +12,10 @@ from mdlgen.backends.motionview.writer.idle import COMMAND, STATEMENT, idle_valu
 from mdlgen.backends.motionview.writer.loads import load_views
 from mdlgen.backends.motionview.writer.parts.kinds import WRITTEN
 from mdlgen.backends.motionview.writer.rows import Value
-from mdlgen.backends.motionview.writer.scene_rows import SceneView
+from mdlgen.backends.motionview.writer.scene_rows import SceneView, ShaftView
 from mdlgen.backends.motionview.writer.sheets import probe_view, sheet_view, support_views
 from mdlgen.backends.motionview.writer.units import mdl_value, number, with_unit
+from mdlgen.model.parameters.axles import OF_SHAFT
 from mdlgen.model.parameters.names import OF_USER
 from mdlgen.model.tables import Model, Parameter
 
@@ -34,6 +35,11 @@ def scene_view(model: Model, set_contact: bool) -> SceneView:
         supports=support_views(model),
         loads=load_views(model, given),
         machine=machine,
+        shafts=[
+            ShaftView(name, f"Shaft {name.removeprefix(OF_SHAFT)}", rows)
+            for name, rows in given.items()
+            if name.startswith(OF_SHAFT)
+        ],
         contacts=contacts,
         pairs=pairs,
         laws=[] if set_contact else contact_laws(contacts, pairs),

@@ -143,8 +143,8 @@ def _motion(motion: Thing) -> dict[str, Any]:
     return {
         "label": label(motion),
         "joint": label(motion.joint),
-        "freedom": {"ROTATION": "ROT"}[motion.jtype],
-        "quantity": {"VELOCITY": "VEL"}[motion.dtype],
+        "freedom": {"ROTATION": "ROT", "TRANSLATION": "TRANS"}[motion.jtype],
+        "quantity": {"VELOCITY": "VEL", "DISPLACEMENT": "DISP"}[motion.dtype],
         "type": "EXPR",
         "value": motion.function,
     }
@@ -223,12 +223,12 @@ def _requests(objects: Objects, found: dict[str, Any]) -> None:
 
 
 def _forces(objects: Objects, found: dict[str, Any]) -> None:
-    """Loads with their numbers, and clutches with their torque as an expression."""
+    """Loads with their numbers; clutches, and other torques about axles, with an expression."""
     found["forces"], found["clutches"] = {}, {}
     for name, force in objects.of("Gforce"):
         given = force.given
         three = [tuple(given.get(f"{kind}{a}", "0") for a in "xyz") for kind in "ft"]
-        if name.endswith("_clutch"):
+        if name.endswith(("_clutch", "_axle")):
             torque = [_named(objects, text) for text in three[1]]
             ends = (on(force.i), label(force.i), label(force.rm))
             objects.put(found["clutches"], name, {"ends": ends, "force": three[0], "torque": torque})

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from typing import Any
 
+from mdlgen.altair.axles import with_rotors
 from mdlgen.backends.msolve.writer.units import Row, axes, per_thousand, row, same, thousandfold
 from mdlgen.model.parts.guide import Facet
 from mdlgen.model.tables import Model, PlanePart, Press, RollerPart
@@ -18,7 +19,7 @@ def body(model: Model, body: int) -> Table:
         "center": row(table.position[body]),
         "axes": axes(table.rotation[body]),
         "mass": per_thousand(table.mass[body]),
-        "inertia": row(table.inertia[body], per_thousand),
+        "inertia": row(with_rotors(model)[body], per_thousand),
     }
 
 
@@ -43,7 +44,19 @@ def box(facet: Facet) -> tuple[Any, ...]:
 def spins(model: Model) -> dict[str, Row]:
     """Angular velocity [rad/s] along global axes that a roller begins with, of those that have one."""
     return {
-        roller.name: row(roller.spin * roller.axis, thousandfold)
+        roller.name: row(roller.first_spin * roller.axis, thousandfold)
         for roller in model.rollers
-        if roller.spin != 0.0
+        if roller.first_spin != 0.0
     }
+
+
+def moves(model: Model) -> dict[str, Table]:
+    """Axis and pivot, or direction, and the corners of the profile, of parts that move."""
+    found = {}
+    for part, motion in model.gates:
+        way: Table = {"along": row(motion.axis)}
+        if motion.turns:
+            way = {"about": row(motion.axis), "pivot": row(motion.pivot)}
+        corners = [[per_thousand(t), same(q)] for t, q in motion.corners[:, :2].tolist()]
+        found[part.name] = {**way, "corners": corners}
+    return found

@@ -6,6 +6,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import replace
 
 from mdlgen.formulas import is_formula
+from mdlgen.model.parameters.axles import shaft_rows
 from mdlgen.model.parameters.loads import load_rows
 from mdlgen.model.parameters.names import FRICTION, OF_USER, in_text, unit
 from mdlgen.model.parameters.run import run_rows, step_source
@@ -106,6 +107,7 @@ def _given(scene: Scene, machine: Sequence[Parameter], run: RunSettings) -> list
         rows += grading_rows(scene, name)
         rows += zones_rows(scene, name)
         rows += shape_rows(scene, name)
+    rows += shaft_rows(scene)
     rows += machine
     for index, (contact, (smooth, slow, fast)) in enumerate(zip(scene.contacts, speeds(scene), strict=True)):
         base, group, friction = ("contacts", index), f"contact_{index}", contact.friction

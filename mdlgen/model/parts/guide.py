@@ -13,6 +13,7 @@ from mdlgen.geometry.rods import Box, Rod, into_box
 from mdlgen.geometry.solids import BOX, CORNERS, Solid, bent_plate
 from mdlgen.model.frames import frame
 from mdlgen.model.moved import carries, lower_motion, moves, swept, watched
+from mdlgen.model.parameters.moving import moving_rows
 from mdlgen.model.parameters.names import NAMED_AXES
 from mdlgen.model.parts.kind import BodyRow, Boxes, Drawn, Kind
 from mdlgen.model.press.before import Before
@@ -131,6 +132,7 @@ class _Guides(Kind[GuidePart]):
             Parameter(name, "w", "Width", guide.width, "mm", (*base, "width")),
             Parameter(name, "s", "Thickness of the plate", guide.thickness, "mm", (*base, "thickness")),
             Parameter(name, "M", "Mass", guide.mass, "g", (*base, "mass")),
+            *moving_rows(name, guide, base),
         ]
 
     def facts(self, model: Model, part: GuidePart) -> list[str]:

@@ -14,6 +14,7 @@ from mdlgen.model.grid import rotation_matrix
 from mdlgen.model.meshes import LIGHT, mass_of, placed, reach
 from mdlgen.model.moved import carries, lower_motion, moves, swept, watched
 from mdlgen.model.parameters.machine import center_rows
+from mdlgen.model.parameters.moving import moving_rows
 from mdlgen.model.parameters.names import NAMED_AXES
 from mdlgen.model.parts.kind import SLACK, BodyRow, Drawn, Kind
 from mdlgen.model.press.before import Before
@@ -110,6 +111,7 @@ class _Meshes(Kind[MeshPart]):
         for k, axis in enumerate(NAMED_AXES):
             label = f"Rotation about {axis} (deg)"
             rows.append(Parameter(name, f"r_{axis}", label, mesh.rotation[k], "rad", (*base, "rotation", k)))
+        rows += moving_rows(name, mesh, base)
         if mesh.density is not None:
             path = (*base, "density")
             return [*rows, Parameter(name, "rho", "Density (kg/mm3)", mesh.density, "g/mm^3", path)]

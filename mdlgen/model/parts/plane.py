@@ -13,6 +13,7 @@ from mdlgen.geometry.solids import BOX, CORNERS, Solid
 from mdlgen.model.frames import frame
 from mdlgen.model.moved import carries, lower_motion, moves, swept, watched
 from mdlgen.model.parameters.machine import center_rows, spring_rows, start_row
+from mdlgen.model.parameters.moving import moving_rows
 from mdlgen.model.parameters.names import NAMED_AXES
 from mdlgen.model.parts.kind import SLACK, BodyRow, Boxes, Drawn, Kind
 from mdlgen.model.parts.words import begins, direction
@@ -150,6 +151,7 @@ class _Planes(Kind[PlanePart]):
             label = f"Length along its {axis}"
             rows.append(Parameter(name, f"L_{axis}", label, size, "mm", (*base, "size", k)))
         rows.append(Parameter(name, "M", "Mass", plane.mass, "g", (*base, "mass")))
+        rows += moving_rows(name, plane, base)
         if plane.press is None:
             return rows
         rows += spring_rows(name, plane.press, base)

@@ -12,6 +12,7 @@ from mdlgen.model.axles import turning
 from mdlgen.model.covers import covered, lower_cover
 from mdlgen.model.frames import frame
 from mdlgen.model.moved import lower_stops
+from mdlgen.model.parameters.axles import axle_rows, drive_rows, ratio_rows
 from mdlgen.model.parameters.machine import center_rows, spring_rows, start_row
 from mdlgen.model.parameters.names import NAMED_AXES
 from mdlgen.model.parts.kind import SLACK, BodyRow, Boxes, Drawn, Kind
@@ -182,18 +183,8 @@ class _Rollers(Kind[RollerPart]):
             Parameter(name, "M", "Mass", roller.mass, "g", (*base, "mass")),
         ]
         if roller.drive is not None:
-            drive = (*base, "drive")
-            if roller.drive.speed is not None:
-                rows.append(
-                    Parameter(name, "omega", "Speed (rad/s)", roller.drive.speed, "rad/ms", (*drive, "speed"))
-                )
-                rows.append(Parameter(name, "ramp", "Ramp time", roller.drive.ramp, "ms", (*drive, "ramp")))
-            for k, (time, speed) in enumerate(roller.drive.profile or ()):
-                at = (*drive, "profile", k)
-                rows.append(Parameter(name, f"t_{k}", f"Time of corner {k}", time, "ms", (*at, 0)))
-                rows.append(
-                    Parameter(name, f"w_{k}", f"Speed at corner {k} (rad/s)", speed, "rad/ms", (*at, 1))
-                )
+            rows += drive_rows(name, roller.drive, (*base, "drive"))
+        rows += ratio_rows(scene, name)
         if roller.spin != 0.0:
             label = "Spin as the run begins (rad/s)"
             rows.append(Parameter(name, "spin", label, roller.spin, "rad/ms", (*base, "spin")))
@@ -204,6 +195,7 @@ class _Rollers(Kind[RollerPart]):
                 Parameter(name, "T_w", "Torque of its clutch (N mm)", way.torque, "N*mm", (*path, "torque")),
                 Parameter(name, "w_w", label, way.creep, "rad/ms", (*path, "creep")),
             ]
+        rows += axle_rows(name, roller)
         rows += _rim_rows(scene, name) + _arm_rows(scene, name)
         if roller.press is not None:
             carrier = roller.press.carrier_mass

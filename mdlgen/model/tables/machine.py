@@ -202,6 +202,11 @@ class RollerPart(MachinePart):
         return self.speed is not None and self.turns and not self.motor and self.leader < 0
 
     @property
+    def first_spin(self) -> float:
+        """Its spin as the run begins, where nothing prescribes it [rad/ms]: its own, or its shaft's."""
+        return float(self.prescribed(0.0)) if self.begins_turning else self.spin
+
+    @property
     def motor(self) -> bool:
         """True if a motor turns it, whose torque is limited."""
         return self.axle is not None and self.axle.motor

@@ -4,9 +4,8 @@ from __future__ import annotations
 
 import numpy as np
 
-from mdlgen.model.tables import (
-    Model,
-)
+from mdlgen.altair.axles import with_rotors
+from mdlgen.model.tables import Model
 from mdlgen.verify.expected.parts.kinds import kind_of
 from mdlgen.verify.expected.points import boxes_of
 from mdlgen.verify.expected.units import KG, SECOND, reach
@@ -18,7 +17,7 @@ def bodies(model: Model) -> Table:
     more = [body for part in model.machine for body in kind_of(part).bodies(model, part)]
     names = [f"b_{n}" for n in bodies.name] + [body.name for body in more]
     mass = np.concatenate([bodies.mass, [body.mass for body in more]]) * KG
-    inertia = np.array([*bodies.inertia, *(body.inertia for body in more)]) * KG
+    inertia = np.array([*with_rotors(model), *(body.inertia for body in more)]) * KG
     position = np.array([*bodies.position, *(body.place for body in more)])
     axes = np.array([*bodies.rotation.transpose(0, 2, 1), *(np.eye(3) for _ in more)])
     products = np.zeros_like(inertia)
@@ -40,8 +39,8 @@ def velocities(model: Model) -> Table:
         for b in boxes_of(model, s)
         if not model.bodies.fixed[b]
     ]
-    spun = [roller for roller in model.rollers if roller.spin != 0.0]
-    still, turned = np.zeros((len(spun), 3)), [roller.spin * roller.axis for roller in spun]
+    spun = [roller for roller in model.rollers if roller.first_spin != 0.0]
+    still, turned = np.zeros((len(spun), 3)), [roller.first_spin * roller.axis for roller in spun]
     boxes, rows = np.array(rows, dtype=int), [*rows, *(roller.body for roller in spun)]
     velocity = np.concatenate([model.bodies.velocity[boxes], still]) / SECOND
     spin = np.concatenate([model.bodies.spin[boxes], np.reshape(turned, (-1, 3))]) / SECOND

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from mdlgen.model.tables import Model, OneWay, RollerPart
-from mdlgen.verify.expected.motions import Times
+from mdlgen.verify.expected.times import Times, longest
 from mdlgen.verify.expected.units import SECOND
 from mdlgen.verify.tables import Table, table
 
@@ -17,8 +17,7 @@ IDLE = ("0",) * 5
 
 def clutch_times(times: Times, roller: str) -> tuple[float, ...]:
     """Times at which the law of a clutch is looked at [s]: those of its shaft."""
-    most = max(map(len, times.values()), default=1)
-    return times.get(f"mot_{roller}", (0.0,) * most)
+    return times.get(f"mot_{roller}", (0.0,) * (longest(times) or 1))
 
 
 def clutches(model: Model, times: Times) -> Table:

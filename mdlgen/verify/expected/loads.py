@@ -6,7 +6,8 @@ import numpy as np
 
 from mdlgen.model.over_time import factor, no_profile
 from mdlgen.model.tables import Floats, Model
-from mdlgen.verify.expected.motions import OF_LOADS, Times
+from mdlgen.verify.expected.motions import OF_LOADS
+from mdlgen.verify.expected.times import Times
 from mdlgen.verify.expected.units import SECOND, body_name, reach
 from mdlgen.verify.tables import Table, table
 

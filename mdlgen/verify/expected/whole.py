@@ -9,6 +9,7 @@ from __future__ import annotations
 from mdlgen.model.tables import (
     Model,
 )
+from mdlgen.verify.expected.axles import axles
 from mdlgen.verify.expected.bodies import bodies, velocities
 from mdlgen.verify.expected.bushings import bushings, curve_laws, curves, springs
 from mdlgen.verify.expected.clutches import clutches
@@ -16,9 +17,10 @@ from mdlgen.verify.expected.graphics import boxes, surfaces
 from mdlgen.verify.expected.joints import joints
 from mdlgen.verify.expected.loads import loads
 from mdlgen.verify.expected.markers import markers, outputs, vectors
-from mdlgen.verify.expected.motions import Times, motions
+from mdlgen.verify.expected.motions import motions
 from mdlgen.verify.expected.parts.kinds import own_tables
 from mdlgen.verify.expected.points import points
+from mdlgen.verify.expected.times import Times
 from mdlgen.verify.tables import Table
 
 
@@ -36,6 +38,7 @@ def expected(model: Model, times: Times) -> dict[str, Table]:
         "joints": joints(model),
         "motions": motions(model, times),
         "clutches": clutches(model, times),
+        "axles": axles(model, times),
         "velocities": velocities(model),
         "markers": markers(model),
         "vectors": vectors(model),

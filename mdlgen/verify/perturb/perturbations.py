@@ -10,9 +10,10 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator
 from dataclasses import replace
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
+from pydantic import BaseModel
 
 from mdlgen.formulas import Amount
 from mdlgen.model.lowering.stiffness import SUPPORT_FACTOR
@@ -33,6 +34,9 @@ FAR: dict[str, float] = {"MPa": 17.0, "N*mm": 17.0, "N*mm/rad": 17.0}
 FROM_ZERO = {"mm": 0.5, "rad": 0.125, "rad/ms": 0.03125, "mm/ms": 0.25, "N": 0.5, "ms": 0.25, "1": 0.0625}
 FROM_ZERO |= {"mm/ms^2": 2.0**-9}
 
+# Lists whose rows begin with numbers that increase.
+RISING = ("profile", "voltage", "table")
+
 
 class Perturbation(NamedTuple):
     """A number of a data set: where it stands, what it is changed to, and the Model that must come of it."""
@@ -48,8 +52,8 @@ def perturbations(scene: Scene, model: Model) -> Iterator[Perturbation]:
     sheets = {s.name for s in model.sheets}
     for p in model.parameters:
         value = p.value * FAR.get(p.unit, STEP) if p.value else FROM_ZERO.get(p.unit, 0.5)
-        if p.path is not None and p.path[-1:] == (0,) and "profile" in p.path:
-            value = _later(scene, p)
+        if p.path is not None and p.path[-1:] == (0,) and set(RISING) & set(p.path):
+            value = _later(scene, p.path, value)
         if p.path is not None and "sectors" in p.path and p.unit == "rad":
             value = _wider(scene, p)
         where = f"ds_{p.data_set}.real_{p.member}"
@@ -108,19 +112,14 @@ def _moved(scene: Scene, base: Model, name: str, value: float) -> Callable[[], M
     return model
 
 
-def _later(scene: Scene, time: Parameter) -> float:
-    """A time of a corner of a drive or a load, changed to one before the next corner [ms]."""
-    assert time.path is not None
-    kind, name, k = time.path[0], time.path[1], time.path[-2]
-    assert isinstance(k, int)
-    if kind == "loads":
-        profile = scene.loads[int(name)].profile
-    else:
-        drive = scene.rollers[str(name)].drive
-        profile = drive.profile if drive is not None else None
-    assert profile is not None, "so it has corners"
-    after = [corner for corner, _ in profile[k + 1 :]]
-    return time.value + 0.25 * (after[0] - time.value) if after else (time.value + FROM_ZERO["ms"]) * STEP
+def _later(scene: Scene, path: Path, value: float) -> float:
+    """The first number of a corner, as a time, changed to one before that of the next corner."""
+    corners: Any = scene
+    for step in path[:-2]:
+        corners = getattr(corners, str(step)) if isinstance(corners, BaseModel) else corners[step]
+    k = int(path[-2])
+    here, after = corners[k][0], [first for first, _ in corners[k + 1 :]]
+    return here + 0.25 * (after[0] - here) if after else value
 
 
 def _wider(scene: Scene, angle: Parameter) -> float:

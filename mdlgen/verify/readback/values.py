@@ -14,16 +14,17 @@ from mdlgen.verify.expected.clutches import SPINS, clutch_times
 from mdlgen.verify.expected.contacts import CONTACT_NUMBERS, SIX
 from mdlgen.verify.expected.loads import load_times
 from mdlgen.verify.expected.run import RUN_NUMBERS
+from mdlgen.verify.expected.times import OF_AXLES, longest
 from mdlgen.verify.readback.graphics import graphic_tables, surface_table
 from mdlgen.verify.readback.rows import Row, flat, table_of
-from mdlgen.verify.solver_expressions import Places, Unreadable, law, request, torque
+from mdlgen.verify.solver_expressions import Places, Unreadable, law, request, torques
 from mdlgen.verify.tables import Table
 
 Values = Mapping[str, Mapping[str, Any]]
 
 _NAN = float("nan")
 _LOAD = re.compile(r"frc_\d+")
-_CLUTCH = re.compile(r"frc_(\w+)_clutch")
+_CLUTCH, _AXLE = re.compile(r"frc_(\w+)_clutch"), re.compile(r"frc_(\w+)_axle")
 _SPIN = re.compile(r"WZ\(([^()]*)\)")
 _CONTACT = re.compile(r"^\s*CONTACT\(|\)\s*$|\s")
 _MARKER = re.compile(r"[A-Za-z_][\w.]*(?=\s*[,)])")
@@ -79,12 +80,11 @@ class ReadBack:
             "springs": table_of(values.get("springs", {}), _spring, 10),
             **graphic_tables(values.get("graphics", {})),
             "joints": table_of(values.get("joints", {}), _joint, 6),
-            "motions": table_of(
-                values.get("motions", {}), self._motion, max(map(len, self.stations.values()), default=0)
-            ),
+            "motions": table_of(values.get("motions", {}), self._motion, longest(self.stations)),
             "clutches": table_of(
-                _clutches(values), self._clutch, 3 + len(clutch_times(self.stations, "")) * len(SPINS)
+                _spun(values, _CLUTCH), self._clutch, 3 + len(clutch_times(self.stations, "")) * len(SPINS)
             ),
+            "axles": table_of(_spun(values, _AXLE), self._axle, 3 + len(self._points("")) // 2),
             "velocities": table_of(values.get("velocities", {}), lambda n, r: (list(r), ()), 6),
             "markers": table_of(
                 {n: r for n, r in values.get("markers", {}).items() if "." not in n}, _marker, 12
@@ -118,14 +118,31 @@ class ReadBack:
             return _NAN
 
     def _clutch(self, name: str, record: Mapping[str, Any]) -> Row:
-        form, (*idle, about) = _CLUTCH.fullmatch(name), record["components"]
+        form = _CLUTCH.fullmatch(name)
         assert form is not None, "only such names are asked for"
+        return self._torques(record, [(t, w) for t in clutch_times(self.stations, form[1]) for w in SPINS])
+
+    def _axle(self, name: str, record: Mapping[str, Any]) -> Row:
+        form = _AXLE.fullmatch(name)
+        assert form is not None, "only such names are asked for"
+        points = self._points(form[1])
+        return self._torques(record, list(zip(points[::2], points[1::2], strict=True)))
+
+    def _points(self, roller: str) -> tuple[float, ...]:
+        """Times and spins of a roller's axle, one after the other; of one that nobody knows those of another
+        one."""
+        own = [points for name, points in self.stations.items() if name.startswith(OF_AXLES)]
+        return self.stations.get(f"{OF_AXLES}{roller}", own[0] if own else ())
+
+    def _torques(self, record: Mapping[str, Any], points: Sequence[tuple[float, float]]) -> Row:
+        """Axis of a torque, and its values at times [s] and spins [rad/s]; what it is on and follows from."""
+        *idle, about = record["components"]
         # a marker of a joint is called joint_i in texts and decks, i in scripts
         calls = {re.sub(r"\s|joint_", "", call) for call in _SPIN.findall(about)}
         said = (record["body"], *sorted(calls), *idle)
         try:
             axis = self.places[record["reference"]].axes[2].tolist()
-            laws = [torque(about, t, w) for t in clutch_times(self.stations, form[1]) for w in SPINS]
+            laws = torques(about, points)
         except Unreadable:
             return [], said
         return [*axis, *laws], said
@@ -193,15 +210,17 @@ def _curve_laws(records: Mapping[str, Any]) -> dict[str, Mapping[str, str]]:
     return {f"{n}.{place}": law for n, r in records.items() for place, law in r.get("curves", {}).items()}
 
 
-def _clutches(values: Values) -> dict[str, dict[str, Any]]:
-    """Body, reference marker and six components of each, as expressions; a script lists them apart."""
+def _spun(values: Values, named: re.Pattern[str]) -> dict[str, dict[str, Any]]:
+    """Body, reference marker and six components, as expressions, of each torque that follows from a spin; a
+    script lists them apart."""
     found: dict[str, dict[str, Any]] = {}
     for name, record in values.get("clutches", {}).items():
-        body, _, reference = record["ends"]
-        components = (*record["force"], *record["torque"])
-        found[name] = {"body": body, "reference": reference, "components": [_text(v) for v in components]}
+        if named.fullmatch(name):
+            body, _, reference = record["ends"]
+            components = (*record["force"], *record["torque"])
+            found[name] = {"body": body, "reference": reference, "components": [_text(v) for v in components]}
     for name, record in values.get("forces", {}).items():
-        if _CLUTCH.fullmatch(name):
+        if named.fullmatch(name):
             components = (*record["force"], *record["torque"])
             found[name] = record | {"components": [_text(v) for v in components]}
     return found

@@ -5,6 +5,7 @@ from __future__ import annotations
 from mdlgen.backends.motionsolve.writer.axes import cosines
 from mdlgen.backends.motionsolve.writer.facets import Shown
 from mdlgen.backends.motionsolve.writer.ids import GROUND_ID
+from mdlgen.backends.motionsolve.writer.joints import add_gate
 from mdlgen.backends.motionsolve.writer.parts.kind import Kind
 from mdlgen.backends.motionsolve.writer.rows import Deck
 from mdlgen.backends.motionsolve.writer.units import triples
@@ -27,6 +28,9 @@ class _Guides(Kind[GuidePart]):
             piece = "" if part.radius == 0.0 else f", part {k}"
             made.append(Shown(f"gbox_{part.name}_{k}", f"{part.name}{piece}", facet))
         return made
+
+    def add_joints(self, deck: Deck, model: Model, part: GuidePart) -> None:
+        add_gate(deck, part, part.center)
 
 
 KIND = _Guides()

@@ -1,10 +1,11 @@
-"""Rows of rollers: axles, carriers, arms, drives, clutches, cylinders, rims and what is recorded."""
+"""Rows of rollers: axles, carriers, arms, drives, torques, cylinders, rims and what is recorded."""
 
 from __future__ import annotations
 
 import numpy as np
 
 from mdlgen.altair import refinement
+from mdlgen.altair.axles import pieces
 from mdlgen.altair.rims import rim_facets
 from mdlgen.backends.motionsolve.writer.axes import cosines
 from mdlgen.backends.motionsolve.writer.body import add_body
@@ -25,6 +26,7 @@ from mdlgen.backends.motionsolve.writer.rows import (
 )
 from mdlgen.backends.motionsolve.writer.units import number, per_thousand, thousandfold, triples
 from mdlgen.model.tables import ArmPart, Floats, Model, OneWay, Press, RollerPart
+from mdlgen.model.tables.axle import LIMITER, OPEN, AxlePart
 
 _CONVERT = ((0, per_thousand), (1, thousandfold))  # the columns of a profile
 
@@ -61,6 +63,8 @@ class _Rollers(Kind[RollerPart]):
         axle = join(deck, f"j_{part.name}", f"Axle of {part.name}", "REVOLUTE", body, on, place, part.axis)
         if part.one_way is not None:
             _add_clutch(deck, model, part, part.one_way, deck.joints[-1])
+        elif part.axle is not None:
+            _add_torques(deck, model, part, part.axle, deck.joints[-1])
         elif part.speed is not None:
             name, label = f"mot_{part.name}", f"Drive of {part.name}"
             deck.motions.append(Motion(name, label, len(deck.motions) + 1, law(part), axle))
@@ -86,8 +90,43 @@ def _add_clutch(deck: Deck, model: Model, roller: RollerPart, way: OneWay, axle:
     """The torque of a clutch, 2 torque s^2 / (1 + s) of the relative speed s against the free sense."""
     shaft = f"({law(roller)})" if roller.speed is not None else "0"
     sense = way.direction
-    s = f"MAX(0,{sense}*({shaft}-WZ({axle.i},{axle.j},{axle.j}))/{thousandfold(way.creep)})"
-    name, label = f"frc_{roller.name}_clutch", f"Clutch of {roller.name}"
+    s = f"MAX(0,{sense}*({shaft}-{_spin(axle)})/{thousandfold(way.creep)})"
+    torque = f"{number(2 * sense * way.torque)}*{s}*{s}/(1+{s})"
+    _add_torque(deck, model, roller, axle, ("clutch", f"Clutch of {roller.name}"), torque)
+
+
+def _add_torques(deck: Deck, model: Model, roller: RollerPart, own: AxlePart, axle: Joint) -> None:
+    """The torques of a motor that runs by its voltage, a limiter and a bearing."""
+    spin, torque = _spin(axle), ""
+    if own.kind == OPEN:
+        slow = f"({law(roller)}-{spin})"
+        (_, first), *others = [(thousandfold(s), per_thousand(more)) for s, more in pieces(own)]
+        torque = f"{first}*{slow}"
+        torque += "".join(f"+({more})*(MAX(0,{slow}-{s})-MAX(0,-{slow}-{s}))" for s, more in others)
+    elif own.kind == LIMITER:
+        rate = f"{law(roller)}-{spin}" if roller.speed is not None else f"-{spin}"
+        torque = f"{number(own.limit)}*{_smooth(rate, own.creep)}"
+    if own.friction or own.drag:
+        torque += f"-{number(own.friction)}*{_smooth(spin, own.ease)}-{per_thousand(own.drag)}*{spin}"
+    _add_torque(deck, model, roller, axle, ("axle", f"Torque on {roller.name}"), torque or "0")
+
+
+def _spin(axle: Joint) -> str:
+    return f"WZ({axle.i},{axle.j},{axle.j})"
+
+
+def _smooth(rate: str, over: float) -> str:
+    """-1 to 1 over a speed [rad/ms] either way."""
+    width = thousandfold(over)
+    return f"STEP({rate},-{width},-1,{width},1)"
+
+
+def _add_torque(
+    deck: Deck, model: Model, roller: RollerPart, axle: Joint, called: tuple[str, str], torque: str
+) -> None:
+    """A torque on a roller about its axle."""
+    word, label = called
+    name = f"frc_{roller.name}_{word}"
     (at,) = triples(model.bodies.position[roller.body][None])
     deck.clutches.append(
         Clutch(
@@ -96,7 +135,7 @@ def _add_clutch(deck: Deck, model: Model, roller: RollerPart, way: OneWay, axle:
             id=len(model.loads.body) + len(deck.clutches) + 1,
             marker=deck.marker(f"{name}.i", f"{label}-Marker I", body_id(roller.body), at),
             along=axle.i,
-            torque=f"{number(2 * sense * way.torque)}*{s}*{s}/(1+{s})",
+            torque=torque,
         )
     )
 

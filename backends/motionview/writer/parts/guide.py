@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from mdlgen.backends.motionview.writer.axes import axis_of, zx_vector
+from mdlgen.backends.motionview.writer.moving import MovingView, moving_view
 from mdlgen.backends.motionview.writer.parts.kind import Kind, PartView
 from mdlgen.backends.motionview.writer.rows import Axis, Value
 from mdlgen.model.tables import GuidePart, Model
@@ -15,6 +16,7 @@ class GuideView(PartView):
     """One guide."""
 
     template = "guide.mdl.j2"
+    moving: MovingView | None
     derived: list[tuple[str, str, str]]
     straight: bool
     axis: Axis
@@ -41,6 +43,7 @@ class _Guides(Kind[GuidePart]):
         return GuideView(
             name=part.name,
             given=given,
+            moving=moving_view(part.name, part.moving),
             derived=derived,
             straight=straight,
             axis=axis_of(f"v_{part.name}_axis", part.axes[:, 2]),

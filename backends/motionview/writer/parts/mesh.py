@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from mdlgen.backends.motionview.writer.axes import components
+from mdlgen.backends.motionview.writer.moving import MovingView, moving_view
 from mdlgen.backends.motionview.writer.parts.kind import Kind, PartView
 from mdlgen.backends.motionview.writer.rows import Value
 from mdlgen.backends.motionview.writer.units import number
@@ -16,6 +17,7 @@ class MeshView(PartView):
     """One mesh; its graphic is the file."""
 
     template = "mesh.mdl.j2"
+    moving: MovingView | None
     derived: list[tuple[str, str, str]]
     mass: str  # reference to it
     file: str
@@ -42,6 +44,7 @@ class _Meshes(Kind[MeshPart]):
         return MeshView(
             name=part.name,
             given=given,
+            moving=moving_view(part.name, part.moving),
             derived=derived,
             mass=mass,
             file=part.file,

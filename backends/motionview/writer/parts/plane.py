@@ -7,6 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from mdlgen.backends.motionview.writer.axes import axis_of, components, zx_vector
+from mdlgen.backends.motionview.writer.moving import MovingView, moving_view
 from mdlgen.backends.motionview.writer.parts.kind import Kind, PartView
 from mdlgen.backends.motionview.writer.rows import Axis, Value
 from mdlgen.model.tables import Model, PlanePart
@@ -17,6 +18,7 @@ class PlaneView(PartView):
     """One plane."""
 
     template = "plane.mdl.j2"
+    moving: MovingView | None
     normal: Axis
     guide: str
     pressed: bool
@@ -31,6 +33,7 @@ class _Planes(Kind[PlanePart]):
         return PlaneView(
             name=part.name,
             given=given,
+            moving=moving_view(part.name, part.moving),
             normal=axis_of(f"v_{part.name}_normal", part.normal),
             guide=zx_vector(model.bodies.rotation[part.body]),
             pressed=press is not None,

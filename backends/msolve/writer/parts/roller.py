@@ -5,11 +5,13 @@ from __future__ import annotations
 from collections.abc import Iterator
 from typing import Any
 
+from mdlgen.altair.axles import pieces
 from mdlgen.altair.rims import Side, graphics, rim_facets
 from mdlgen.backends.msolve.writer.bodies import body, box, press
 from mdlgen.backends.msolve.writer.parts.kind import Kind, Table
 from mdlgen.backends.msolve.writer.units import per_thousand, row, same, thousandfold
 from mdlgen.model.tables import Model, RollerPart
+from mdlgen.model.tables.axle import LIMITER, OPEN, AxlePart
 
 
 class _Rollers(Kind[RollerPart]):
@@ -47,6 +49,8 @@ class _Rollers(Kind[RollerPart]):
             way = part.one_way
             clutch = {"torque": same(way.torque), "creep": thousandfold(way.creep)}
             table["clutch"] = {"direction": way.direction, **clutch}
+        if part.axle is not None:
+            table |= _torques(part.axle)
         if part.rim is not None:
             rim: dict[str, list[Any]] = {name: [] for name in part.rim.name}
             place, turned = model.bodies.position[part.body], model.bodies.rotation[part.body]
@@ -67,6 +71,19 @@ class _Rollers(Kind[RollerPart]):
         if part.arm is not None:
             yield f"b_{part.name}_arm"
         yield f"o_{part.name}"
+
+
+def _torques(axle: AxlePart) -> Table:
+    """Of a motor that runs by its voltage, a limiter and a bearing; none of them: no torque."""
+    found: Table = {"torques": {}}
+    if axle.kind == OPEN:
+        found["torques"]["motor"] = [[thousandfold(s), per_thousand(more)] for s, more in pieces(axle)]
+    elif axle.kind == LIMITER:
+        found["torques"]["limiter"] = {"torque": same(axle.limit), "creep": thousandfold(axle.creep)}
+    if axle.friction or axle.drag:
+        bearing = {"torque": same(axle.friction), "creep": thousandfold(axle.ease)}
+        found["torques"]["bearing"] = bearing | {"drag": per_thousand(axle.drag)}
+    return found
 
 
 KIND = _Rollers()

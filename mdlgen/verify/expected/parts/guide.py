@@ -10,14 +10,27 @@ import numpy as np
 from mdlgen.altair.rims import Side
 from mdlgen.model.parts.guide import facets, outer
 from mdlgen.model.tables import Floats, GuidePart, Model
-from mdlgen.verify.expected.parts.kind import Box, Kind, Marker, own_vector
+from mdlgen.verify.expected.parts.kind import (
+    Box,
+    Joint,
+    Kind,
+    Marker,
+    gate_joint,
+    gate_pivot,
+    gate_way,
+    own_vector,
+)
 
 
 class _Guides(Kind[GuidePart]):
     def points(self, model: Model, part: GuidePart) -> Iterator[tuple[str, Floats]]:
+        yield from gate_pivot(part.name, part.moving)
         yield f"p_{part.name}", part.center
         for box in self.boxes(model, part):
             yield f"p_{box.name.removeprefix('gbox_')}", box.center
+
+    def joints(self, model: Model, part: GuidePart) -> Iterator[Joint]:
+        yield from gate_joint(part.name, part.moving, part.center)
 
     def boxes(self, model: Model, part: GuidePart) -> Iterator[Box]:
         for k, facet in enumerate(facets(part)):
@@ -27,6 +40,7 @@ class _Guides(Kind[GuidePart]):
         yield Marker(f"m_{part.name}", "B_Ground", part.center, part.axes)
 
     def vectors(self, model: Model, part: GuidePart) -> Iterator[tuple[str, Floats]]:
+        yield from gate_way(part.name, part.moving)
         yield from own_vector(f"v_{part.name}_axis", part.axes[:, 2])
         if part.radius == 0.0:
             given = {p.member: p.value for p in model.parameters if p.data_set == part.name}

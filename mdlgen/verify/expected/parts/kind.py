@@ -11,8 +11,9 @@ from typing import Generic, NamedTuple, TypeVar
 
 import numpy as np
 
+from mdlgen.altair.moving import joint_of
 from mdlgen.altair.rims import Side
-from mdlgen.model.tables import Floats, MachinePart, Model, Press
+from mdlgen.model.tables import Floats, MachinePart, Model, MovingPart, Press
 from mdlgen.verify.tables import Table
 
 P = TypeVar("P", bound=MachinePart)
@@ -125,7 +126,9 @@ class Kind(Generic[P]):
 
     def names(self, part: P) -> set[str]:
         """The names of entities in an MDL file that derive from its name, without contacts."""
-        return {f"{kind}_{part.name}" for kind in ("p", "b", "gbox", "gcyl", "j", "o", "ds")}
+        return {f"{kind}_{part.name}" for kind in ("p", "b", "gbox", "gcyl", "j", "o", "ds")} | {
+            f"{start}_{part.name}_{end}" for start, end in (("p", "pivot"), ("j", "pivot"), ("j", "slide"))
+        }
 
 
 def own_vector(name: str, direction: Floats) -> Iterable[tuple[str, Floats]]:
@@ -137,6 +140,25 @@ def own_vector(name: str, direction: Floats) -> Iterable[tuple[str, Floats]]:
 def axis_vectors(name: str, rotation: Floats) -> Iterable[tuple[str, Floats]]:
     """The two that give a marker its axes, which are the columns of `rotation`."""
     return ((f"{name}_z", rotation[:, 2]), (f"{name}_x", rotation[:, 0]))
+
+
+def gate_joint(name: str, moving: MovingPart | None, place: Floats) -> Iterable[Joint]:
+    """The joint of a part that moves by a profile, at its pivot or its place."""
+    if moving is None:
+        return ()
+    word, type = joint_of(moving)
+    at = moving.pivot if moving.turns else place
+    return (Joint(f"j_{name}_{word}", type, f"b_{name}", "B_Ground", at, moving.axis),)
+
+
+def gate_pivot(name: str, moving: MovingPart | None) -> Iterable[tuple[str, Floats]]:
+    """The point that a part turns about."""
+    return () if moving is None or not moving.turns else ((f"p_{name}_pivot", moving.pivot),)
+
+
+def gate_way(name: str, moving: MovingPart | None) -> Iterable[tuple[str, Floats]]:
+    """Its axis, or its direction, as a vector."""
+    return () if moving is None else own_vector(f"v_{name}_moves", moving.axis)
 
 
 def spring_of(model: Model, part: MachinePart, press: Press, body: str) -> Spring:

@@ -10,17 +10,27 @@ from mdlgen.altair.rims import Side
 from mdlgen.model.meshes import origin
 from mdlgen.model.tables import Floats, Ints, MeshPart, Model
 from mdlgen.spec.solid import moments
-from mdlgen.verify.expected.parts.kind import Joint, Kind, Marker, axis_vectors
+from mdlgen.verify.expected.parts.kind import (
+    Joint,
+    Kind,
+    Marker,
+    axis_vectors,
+    gate_joint,
+    gate_pivot,
+    gate_way,
+)
 from mdlgen.verify.expected.units import reach
 from mdlgen.verify.tables import Part, Table, table
 
 
 class _Meshes(Kind[MeshPart]):
     def points(self, model: Model, part: MeshPart) -> Iterator[tuple[str, Floats]]:
+        yield from gate_pivot(part.name, part.moving)
         yield f"p_{part.name}", origin(part, model.rollers)
         yield f"p_{part.name}_cm", model.bodies.position[part.body]
 
     def joints(self, model: Model, part: MeshPart) -> Iterator[Joint]:
+        yield from gate_joint(part.name, part.moving, model.bodies.position[part.body])
         if part.on >= 0:
             at, name = model.bodies.position[part.body], part.name
             yield Joint(f"j_{name}", "FIXED", f"b_{name}", _under(model, part), at, np.zeros(3))
@@ -29,6 +39,7 @@ class _Meshes(Kind[MeshPart]):
         yield Marker(f"m_{part.name}", _under(model, part), origin(part, model.rollers), part.axes)
 
     def vectors(self, model: Model, part: MeshPart) -> Iterator[tuple[str, Floats]]:
+        yield from gate_way(part.name, part.moving)
         yield from axis_vectors(f"v_{part.name}", part.axes)
         yield from axis_vectors(f"v_{part.name}_cm", model.bodies.rotation[part.body])
 

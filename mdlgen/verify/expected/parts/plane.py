@@ -6,17 +6,29 @@ from collections.abc import Iterable, Iterator
 
 from mdlgen.altair.rims import Side
 from mdlgen.model.tables import Floats, Model, PlanePart
-from mdlgen.verify.expected.parts.kind import Box, Joint, Kind, Spring, own_vector, spring_of
+from mdlgen.verify.expected.parts.kind import (
+    Box,
+    Joint,
+    Kind,
+    Spring,
+    gate_joint,
+    gate_pivot,
+    gate_way,
+    own_vector,
+    spring_of,
+)
 from mdlgen.verify.solver_expressions import motion
 
 
 class _Planes(Kind[PlanePart]):
     def points(self, model: Model, part: PlanePart) -> Iterator[tuple[str, Floats]]:
+        yield from gate_pivot(part.name, part.moving)
         yield f"p_{part.name}", model.bodies.position[part.body]
         for spring in self.springs(model, part):
             yield f"p_{part.name}_anchor", spring.anchor
 
     def joints(self, model: Model, part: PlanePart) -> Iterator[Joint]:
+        yield from gate_joint(part.name, part.moving, model.bodies.position[part.body])
         if part.press is not None:
             name, at = part.name, model.bodies.position[part.body]
             way = part.press.direction
@@ -28,6 +40,7 @@ class _Planes(Kind[PlanePart]):
         yield Box(f"gbox_{part.name}", f"b_{part.name}", table.position[body], table.rotation[body], lengths)
 
     def vectors(self, model: Model, part: PlanePart) -> Iterator[tuple[str, Floats]]:
+        yield from gate_way(part.name, part.moving)
         yield from own_vector(f"v_{part.name}_normal", part.normal)
         if part.press is not None:
             yield f"v_{part.name}_press", part.press.direction

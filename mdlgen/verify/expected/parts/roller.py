@@ -20,7 +20,7 @@ from mdlgen.verify.expected.parts.kind import (
     own_vector,
     spring_of,
 )
-from mdlgen.verify.expected.units import KG, reach
+from mdlgen.verify.expected.units import KG, SECOND, reach
 from mdlgen.verify.solver_expressions import motion
 from mdlgen.verify.tables import Part, Table, table
 
@@ -97,6 +97,7 @@ class _Rollers(Kind[RollerPart]):
             radius, turn = float(rim.radius[k]), float(rim.end[k] - rim.begin[k]) / rim.facets[k]
             found |= {f"{name}_n": float(rim.facets[k]), f"{name}_turn": turn}
             found |= {f"{name}_deep": DEEP * radius, f"{name}_chord": 2 * radius * math.tan(turn / 2)}
+        found |= _of_motor(model, part)
         return found if part.arm is None else {**found, "I_a": part.arm.inertia * KG}
 
     def tables(self, model: Model) -> dict[str, Table]:
@@ -108,12 +109,31 @@ class _Rollers(Kind[RollerPart]):
     def names(self, part: RollerPart) -> set[str]:
         n = part.name
         found = super().names(part) | {f"p_{n}_anchor", f"b_{n}_carrier", f"j_{n}_slide"}
-        found |= {f"frc_{n}_clutch"}
+        found |= {f"frc_{n}_clutch", f"frc_{n}_axle"}
         found |= {f"p_{n}_pivot", f"p_{n}_arm", f"b_{n}_arm", f"j_{n}_pivot", f"bsh_{n}_arm"}
         if part.rim is not None:
             shown = [name.removeprefix("gbox_") for name in graphics(part, WHOLE)]
             found |= {f"m_{n}", *(f"{kind}_{name}" for name in shown for kind in ("p", "gbox"))}
         return found
+
+
+def _of_motor(model: Model, part: RollerPart) -> dict[str, float]:
+    """No-load speed at the roller [rad/s], and growth of torque [N mm s/rad] over what it is slower than that
+    [rad/s], by pieces of a table."""
+    axle, last = part.axle, 0 if part.axle is None else len(part.axle.curve) - 1
+    if axle is None or last < 1:
+        return {}
+    slow, torque = axle.curve.T
+    slopes = np.diff(torque) / np.diff(slow) * SECOND
+    given = {p.member: p.value for p in model.parameters if p.data_set == part.name}
+    if "T_m" in given:
+        return {"w_n": given["w_m"] / given["g_m"] / SECOND, "k_m": float(slopes[0])}
+    found = {"w_n": given[f"w_m{last}"] / given["g_m"] / SECOND}
+    for k in range(last, 0, -1):  # the curve begins without load, the table at rest
+        found[f"k_m{k}"] = float(slopes[last - k])
+        if k < last:
+            found[f"b_m{k}"] = float(slow[last - k]) / SECOND
+    return found
 
 
 KIND = _Rollers()

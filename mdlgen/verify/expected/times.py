@@ -1,0 +1,15 @@
+"""Times, and spins of rollers, at which laws are evaluated, by what they are laws of."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+
+Times = Mapping[str, tuple[float, ...]]
+"""Times [s] by motion, as many for all; those of loads; and times and spins of axles, see `axles`."""
+OF_AXLES = "axle "
+"""What the key of the times and spins of a roller begins with: no name has a blank."""
+
+
+def longest(times: Times) -> int:
+    """How many times the law of a drive or a load is looked at, at most."""
+    return max((len(found) for name, found in times.items() if not name.startswith(OF_AXLES)), default=0)

@@ -1,0 +1,91 @@
+"""Guides, planes and meshes that move by a profile, in text, deck and script."""
+
+from __future__ import annotations
+
+import re
+from pathlib import Path
+
+import numpy as np
+import pytest
+from places import TESTS
+
+from mdlgen.altair.moving import places
+from mdlgen.errors import RefusedError
+from mdlgen.model.lower import lower
+from mdlgen.paths import samples
+from mdlgen.registry import emitter
+from mdlgen.spec.load import load, loads
+from mdlgen.spec.scene import Scene
+from mdlgen.verify.perturb import perturb
+from mdlgen.verify.perturb.perturbations import Perturbation
+from mdlgen.verify.verification import verify
+
+OUTPUTS = ["motionview", "motionsolve", "msolve"]
+
+
+def scene_of(*overrides: str) -> Scene:
+    return loads((TESTS / "cases" / "gates.yaml").read_text(), "gates", overrides, folder=samples())
+
+
+def test_motions_are_those_of_the_model_whatever_value_is_changed(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Joints at pivots and along slides; the law of place at every corner and between them."""
+    turn, own = perturb._Perturber.perturb, re.compile(r"ds_(bend|flap|floor|wedge)\.real_[atq]_\w")
+
+    def of_gates(self: perturb._Perturber, perturbation: Perturbation) -> None:
+        if own.fullmatch(perturbation.path):
+            turn(self, perturbation)
+
+    monkeypatch.setattr(perturb._Perturber, "perturb", of_gates)
+    scene = scene_of()
+    found = verify(scene, lower(scene))
+    assert [str(d) for d in found.all_differences()] == []
+    for kinds in found.kinds.values():
+        assert kinds["motions"].entities == 4 and kinds["motions"].largest <= 1e-12
+        assert kinds["joints"].entities == 4 and kinds["joints"].largest <= 1e-12
+    assert found.perturbed is not None and found.perturbed.values == 17
+    assert found.perturbed.largest <= 1e-12
+
+
+def test_what_texts_are_compared_with_is_the_law_of_the_solvers() -> None:
+    from mdlgen.mechanics.gate import course
+    from mdlgen.mechanics.pack import Units, pack_bodies
+    from mdlgen.mechanics.records import OF_BODY
+
+    model, times = lower(scene_of()), np.linspace(0.0, 5.0, 41)
+    rows = pack_bodies(model, np.dtype([*OF_BODY]), Units(), driven=True).view(np.recarray)
+    for part, moving in model.gates:
+        due = [course.py_func(rows[part.body], t).place for t in times.tolist()]
+        assert places(moving, times) == pytest.approx(due, abs=1e-14)
+
+
+@pytest.mark.parametrize(
+    ("output", "wrong", "right"),
+    [
+        ("motionview", r"(ds_bend\.real_q_2\.value\})-\(", r"\g<1>+("),
+        ("motionsolve", r'(val_type +=) "D"', r'\g<1> "V"'),
+        ("msolve", r"(\"along\": \[)0\.6, 0\.0, 0\.8", r"\g<1>0.8, 0.0, 0.6"),
+    ],
+)
+def test_a_motion_that_is_changed_is_caught(output: str, wrong: str, right: str, tmp_path: Path) -> None:
+    scene = scene_of()
+    text = emitter(output).emit(lower(scene))
+    changed = re.sub(wrong, right, text, count=1)
+    assert changed != text
+    file = tmp_path / {"motionview": "m.mdl", "motionsolve": "m.xml", "msolve": "m.py"}[output]
+    file.write_text(changed)
+    key = {"motionview": "text", "motionsolve": "deck", "msolve": "msolve"}[output]
+    assert not verify(scene, lower(scene), perturb=False, **{key: file}).ok
+
+
+@pytest.mark.parametrize("output", OUTPUTS)
+def test_the_diverter_is_written(output: str) -> None:
+    text = emitter(output).emit(lower(load(samples() / "diverter.yaml")))
+    assert "STEP(TIME," in text
+
+
+@pytest.mark.parametrize("output", OUTPUTS)
+def test_a_part_that_forces_move_is_refused_by_name(output: str) -> None:
+    free = "guides.flap.pivot={at: [3 mm, 0 mm, 1 mm], axis: y, inertia: 5 g*mm^2}"
+    with pytest.raises(RefusedError, match="flap moves freely") as error:
+        emitter(output).emit(lower(scene_of(free)))
+    assert error.value.path == ("guides", "flap", "pivot", "inertia")
