@@ -60,6 +60,7 @@ class _Stage:
     state: str
     pending: list[tuple[float, int]] = field(default_factory=list)  # times [ms] and rules that are due then
     ended: bool = False
+    clock: float = 0.0  # when a condition of times alone changes next, or is looked at again [ms]
 
 
 class Machine:
@@ -123,7 +124,9 @@ class Machine:
             at = self._first(lambda ahead: self._changed(self._moving, t + ahead, poses.after(ahead)), step)
             until = min(until, t + at)
         if self._clocked:
-            until = min(until, self._next_time(t, step, poses))
+            if stage.clock <= t + step:
+                stage.clock = self._next_time(t, step, poses)
+            until = min(until, stage.clock)
         return max(until, t + SOON * step)
 
     def _next(self, eye: Eye, sight: Sight, t: float, step: float, poses: Poses) -> float:
@@ -171,8 +174,11 @@ class Machine:
         """Speed of what a sensor sees, at most [mm/ms]."""
         most = 0.0
         for boxes in (eye.boxes[k] for k in self._seen(eye)):
-            half = self._model.bodies.half[boxes]
-            turns = np.linalg.norm(poses.w[boxes], axis=1) * np.linalg.norm(half, axis=1)
+            x, y, z = self._model.bodies.half[boxes].T
+            # about the box's own axes: one that is long across turns about its length in a bend
+            spins = poses.w[boxes, None, :] @ poses.r[boxes].reshape(-1, 3, 3)
+            p, q, s = np.abs(spins[:, 0]).T
+            turns = np.sqrt((q * z + s * y) ** 2 + (s * x + p * z) ** 2 + (p * y + q * x) ** 2)
             most = max(most, float((np.linalg.norm(poses.u[boxes], axis=1) + turns).max()))
         return most
 
@@ -199,6 +205,8 @@ class Machine:
         edges = {self._eyes[edge.eye].name: edge for edge in self._edges(t, step, poses)}
         for edge in edges.values():
             self._see(edge)
+        if edges:
+            stage.clock = 0.0
         seen = {name: edge.time for name, edge in edges.items()}
         orders: list[Order] = []
         acted: set[int] = set()
@@ -280,6 +288,8 @@ class Machine:
         stage, known = self._stage, self._known(t + soon, poses)
         for k, rule in enumerate(self._rules):
             holds = (not rule.states or stage.state in rule.states) and self._conditions[k].holds(known)
+            if holds != stage.true[k]:
+                stage.clock = 0.0
             if holds and not stage.true[k] and not (rule.once and self._set_off(k)):
                 named = {name.partition(".")[0] for name in self._conditions[k].expression.names}
                 since = max((time for name, time in seen.items() if name in named), default=t)
@@ -295,7 +305,7 @@ class Machine:
         stage.fired[rule] += 1
         for order in orders:
             if order.kind == "go":
-                stage.state = order.name
+                stage.state, stage.clock = order.name, 0.0
                 stage.true = [
                     held and (not r.states or stage.state in r.states)
                     for held, r in zip(stage.true, self._rules, strict=True)
@@ -339,7 +349,7 @@ class Machine:
         before = None if self._before is None else [self._before[0], *(a.tolist() for a in self._before[1])]
         return {
             "sights": [vars(sight) for sight in stage.sights],
-            **{name: getattr(stage, name) for name in ("true", "fired", "state", "ended")},
+            **{name: getattr(stage, name) for name in ("true", "fired", "state", "ended", "clock")},
             "pending": [list(entry) for entry in stage.pending],
             "before": before,
             "log": self.log,
@@ -349,7 +359,7 @@ class Machine:
         """Goes back to what `kept` gave."""
         stage, before = self._stage, kept["before"]
         stage.sights = [Sight(**sight) for sight in kept["sights"]]
-        for name in ("true", "fired", "state", "ended"):
+        for name in ("true", "fired", "state", "ended", "clock"):
             setattr(stage, name, kept[name])
         stage.pending = [(time, rule) for time, rule in kept["pending"]]
         self._before = None if before is None else (before[0], Poses(*map(np.array, before[1:])))

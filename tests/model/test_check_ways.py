@@ -190,6 +190,17 @@ def test_air_counts() -> None:
     assert with_air.seconds > 1.3 * plain.seconds
 
 
+def test_what_reacts_counts() -> None:
+    sample = samples() / "sorter.yaml"
+    blind = ["sensors={}", "require=[]", "rules=[{when: time >= 0 ms, do: {enter: infeed}}]"]
+    plain, reacts = (cost(lower(load(sample, sets))) for sets in (blind, []))
+    assert plain and reacts and plain.steps == reacts.steps
+    assert reacts.seconds > 2.0 * plain.seconds
+    # sheets that a rule lets in come in: with 3 for one, each of which is there for a third of the run
+    one, three = (cost(lower(load(sample, [*blind, f"streams.infeed.count={k}"]))) for k in (1, 3))
+    assert one and three and three.seconds > 1.5 * one.seconds
+
+
 def test_air_is_named_where_it_makes_a_run_long() -> None:
     assert ("W134", "contacts.landing.air") in [
         (hit.code, hit.where) for hit in found("landing", "run.duration=5 s", "run.step=30 us")
