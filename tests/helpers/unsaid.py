@@ -7,6 +7,7 @@ _MU = ("contacts.0.friction=0.25",)
 UNSAID: dict[str, tuple[str, ...]] = {
     "landing": ("contacts.landing.air=null",),
     "diverter": ("guides.gate.pivot=null",),
+    "duplex": ("rules=[]", "require=[]", "guides.gate_in.pivot=null", "guides.gate_out.pivot=null"),
     "crease": ("materials.eur10.yield=null",),
     "register": ("rules=[]",),
     "sorter": (
