@@ -1,4 +1,4 @@
-"""samples/duplex.yaml turns a note over, as its head says; at half of its boxes, with a step that is given."""
+"""samples/duplex.yaml turns a note over, as its head says; with half of its boxes, at one step."""
 
 from __future__ import annotations
 
