@@ -16,13 +16,11 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from mdlgen.conditions import condition
 from mdlgen.lints.lint import Lint
 from mdlgen.mechanics.film_grid import film_grids
 from mdlgen.model.parts.kinds import KINDS
 from mdlgen.model.passing import share
 from mdlgen.model.tables import BOX_BOX, Model
-from mdlgen.reactions.known import of_states
 
 START = 4e-3  # [s]
 PASSES = 1.8  # what the coarser runs add to the last one
@@ -31,7 +29,6 @@ PASSES = 1.8  # what the coarser runs add to the last one
 STEP, BOX, BAND = 6e-6, 0.03e-6, 2.1e-9
 PAIR, CURVED, LAID = 0.26e-6, 1.06e-6, 0.8e-6  # with a roller or a plane, a guide or a mesh, another sheet
 MOST_LAID = 4  # of such pairs a box touches so many at a time
-SEEN = 65e-6  # a sensor, and a rule over places, which are looked at from step to step
 AIR = 6e-6  # each cell of a film, between 1 and 15 as it is between free sheets or in a nip
 STATIC_BOX, STATIC_BAND = 4e-5, 1e-7  # [s], of a static run
 # The step of blocks, or without contacts, at a tolerance of 1e-3 [ms]; it goes with the tolerance's root.
@@ -70,7 +67,6 @@ class _Size:
     curved: int
     laid: int
     cells: int  # of all films of air
-    seen: int  # sensors, and rules over places
     contact: bool  # of sheets of more than one box
     pressed: bool  # a plate
 
@@ -80,7 +76,6 @@ class _Size:
         laid = min(self.laid, MOST_LAID * self.boxes)
         each = STEP + BOX * self.boxes + BAND * self.band
         each += PAIR * self.plain + CURVED * self.curved + LAID * laid + AIR * self.cells
-        each += SEEN * self.seen
         return Cost(START + PASSES * steps * each, math.ceil(steps))
 
     def _step(self) -> float:
@@ -127,7 +122,6 @@ def _size(model: Model) -> _Size:
         curved=curved,
         laid=laid + beside,
         cells=len(film_grids(model).cells),
-        seen=_seen(model),
         contact=len(model.pairs) + beside > 0 and max(counts.values()) > 1,
         pressed=any(plane.press is not None for plane in model.planes),
     )
@@ -137,13 +131,6 @@ def _size(model: Model) -> _Size:
         name: math.ceil(part * getattr(size, name)) for name in ("boxes", "plain", "curved", "laid", "cells")
     }
     return replace(size, band=part * size.band, **counted)
-
-
-def _seen(model: Model) -> int:
-    """What a machine that reacts looks at from step to step."""
-    places = of_states(model).keys()
-    rules = [condition(rule.when).expression.names for rule in model.reactions.rules]
-    return len(model.reactions.sensors) + sum(not places.isdisjoint(names) for names in rules)
 
 
 def costly(model: Model) -> Iterator[Lint]:

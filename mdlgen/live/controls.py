@@ -117,7 +117,7 @@ def _control(
 
 
 def _group(data: Any, path: SpecPath) -> str:
-    """The part that a value is of; a contact, load or rule of a list is named by its pair, sheet or condition."""
+    """The part that a value is of; in a list a contact or a load is named by its parts, a rule by `when`."""
     kind, *rest = path
     if len(rest) < 2:
         return str(kind)

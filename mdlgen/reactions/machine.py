@@ -60,7 +60,6 @@ class _Stage:
     state: str
     pending: list[tuple[float, int]] = field(default_factory=list)  # times [ms] and rules that are due then
     ended: bool = False
-    clock: float = 0.0  # when a condition of times alone changes next, or is looked at again [ms]
 
 
 class Machine:
@@ -124,9 +123,7 @@ class Machine:
             at = self._first(lambda ahead: self._changed(self._moving, t + ahead, poses.after(ahead)), step)
             until = min(until, t + at)
         if self._clocked:
-            if stage.clock <= t + step:
-                stage.clock = self._next_time(t, step, poses)
-            until = min(until, stage.clock)
+            until = min(until, self._next_time(t, step, poses))
         return max(until, t + SOON * step)
 
     def _next(self, eye: Eye, sight: Sight, t: float, step: float, poses: Poses) -> float:
@@ -205,8 +202,6 @@ class Machine:
         edges = {self._eyes[edge.eye].name: edge for edge in self._edges(t, step, poses)}
         for edge in edges.values():
             self._see(edge)
-        if edges:
-            stage.clock = 0.0
         seen = {name: edge.time for name, edge in edges.items()}
         orders: list[Order] = []
         acted: set[int] = set()
@@ -288,8 +283,6 @@ class Machine:
         stage, known = self._stage, self._known(t + soon, poses)
         for k, rule in enumerate(self._rules):
             holds = (not rule.states or stage.state in rule.states) and self._conditions[k].holds(known)
-            if holds != stage.true[k]:
-                stage.clock = 0.0
             if holds and not stage.true[k] and not (rule.once and self._set_off(k)):
                 named = {name.partition(".")[0] for name in self._conditions[k].expression.names}
                 since = max((time for name, time in seen.items() if name in named), default=t)
@@ -305,7 +298,7 @@ class Machine:
         stage.fired[rule] += 1
         for order in orders:
             if order.kind == "go":
-                stage.state, stage.clock = order.name, 0.0
+                stage.state = order.name
                 stage.true = [
                     held and (not r.states or stage.state in r.states)
                     for held, r in zip(stage.true, self._rules, strict=True)
@@ -349,7 +342,7 @@ class Machine:
         before = None if self._before is None else [self._before[0], *(a.tolist() for a in self._before[1])]
         return {
             "sights": [vars(sight) for sight in stage.sights],
-            **{name: getattr(stage, name) for name in ("true", "fired", "state", "ended", "clock")},
+            **{name: getattr(stage, name) for name in ("true", "fired", "state", "ended")},
             "pending": [list(entry) for entry in stage.pending],
             "before": before,
             "log": self.log,
@@ -359,7 +352,7 @@ class Machine:
         """Goes back to what `kept` gave."""
         stage, before = self._stage, kept["before"]
         stage.sights = [Sight(**sight) for sight in kept["sights"]]
-        for name in ("true", "fired", "state", "ended", "clock"):
+        for name in ("true", "fired", "state", "ended"):
             setattr(stage, name, kept[name])
         stage.pending = [(time, rule) for time, rule in kept["pending"]]
         self._before = None if before is None else (before[0], Poses(*map(np.array, before[1:])))

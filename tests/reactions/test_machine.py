@@ -52,19 +52,6 @@ def test_a_delay_counts_from_the_edge() -> None:
     assert len(looked) < 40
 
 
-def test_times_are_not_searched_again_at_each_step(monkeypatch) -> None:
-    asked = []
-    old = Machine._changed
-    monkeypatch.setattr(Machine, "_changed", lambda self, *args: asked.append(args[1]) or old(self, *args))
-    rules = [{"when": "eye covered and since(eye) > 5 ms", "do": {"speed": {"w": "0 rad/s"}}}]
-    # a condition over places is looked at from step to step
-    rules.append({"when": "note.x > 1 m", "do": {"end": True}})
-    _, orders, looked = followed(wheel(rules), 0.5, 60.0)
-    assert [t for t, _ in orders] == pytest.approx([30.0], abs=1e-3 * 0.5)
-    # a search asks 64 steps ahead; one is made every 63 steps, and as the sensor changes
-    assert len(looked) >= 120 and len(asked) < len(looked) + 5 * 64
-
-
 def test_a_wide_sheet_in_a_bend_is_not_looked_at_more_often() -> None:
     """A box that turns about its length across goes no faster than its short sides."""
     model = wheel([stop()], note={"size": ["10 mm", "400 mm"]})
