@@ -29,6 +29,7 @@ AT = {
     "tilt_correction": 60.0,
     "channel": 32.0,
     "diverter": 125.0,
+    "duplex": 125.0,
     "guide_joint": 20.0,
     "feeder": 400.0,
     "feeder_one": 400.0,

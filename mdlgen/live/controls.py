@@ -117,14 +117,14 @@ def _control(
 
 
 def _group(data: Any, path: SpecPath) -> str:
-    """The part that a value is of; a contact or a load of a list is named by what it is between, or on."""
+    """The part that a value is of; in a list a contact or a load is named by its parts, a rule by `when`."""
     kind, *rest = path
     if len(rest) < 2:
         return str(kind)
     group, item = f"{kind}.{rest[0]}", data[kind][rest[0]]
     if not isinstance(rest[0], int):
         return group
-    meant = item.get("name") or item.get("between") or item.get("sheet") or ""
+    meant = item.get("name") or item.get("between") or item.get("sheet") or item.get("when") or ""
     return f"{group} ({', '.join(map(str, meant)) if isinstance(meant, list) else meant})"
 
 

@@ -43,11 +43,12 @@ def at_start(model: Model) -> list[bool]:
 
 def share(model: Model) -> float:
     """The part of a run for which sheets are there, in the mean, about: each goes to the nearest plane beyond
-    which it has left at its own speed, or that of the fastest drive."""
+    which it has left at its own speed, or that of the fastest drive. One that a rule lets in counts as there
+    from the start."""
     end, drive = model.run.duration, max((abs(r.speed or 0.0) * r.radius for r in model.rollers), default=0.0)
     stays = 0.0
     for sheet in model.sheets:
-        begun = end if math.isnan(sheet.enters) else min(sheet.enters, end)
+        begun = 0.0 if math.isnan(sheet.enters) else min(sheet.enters, end)
         fast = max(float(np.linalg.norm(sheet.velocity)), drive)
         rotation = model.bodies.rotation.reshape(-1, 9)
         ways = -far(model, sheet, model.bodies.position, rotation)

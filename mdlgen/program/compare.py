@@ -54,6 +54,7 @@ CALM: dict[str, tuple[str, ...]] = {
 RATTLING: dict[str, tuple[str, ...]] = {
     "channel": (),
     "diverter": ("run.duration=20 ms",),
+    "duplex": ("run.duration=20 ms",),
     "feeder": (
         *("sheets.note_1.boxes=[6,2]", "sheets.note_2.boxes=[4,2]"),
         *("run.duration=2 ms", "run.print_step=0.05 ms"),

@@ -173,8 +173,11 @@ class Machine:
         """Speed of what a sensor sees, at most [mm/ms]."""
         most = 0.0
         for boxes in (eye.boxes[k] for k in self._seen(eye)):
-            half = self._model.bodies.half[boxes]
-            turns = np.linalg.norm(poses.w[boxes], axis=1) * np.linalg.norm(half, axis=1)
+            x, y, z = self._model.bodies.half[boxes].T
+            # about the box's own axes: one that is long across turns about its length in a bend
+            spins = poses.w[boxes, None, :] @ poses.r[boxes].reshape(-1, 3, 3)
+            p, q, s = np.abs(spins[:, 0]).T
+            turns = np.sqrt((q * z + s * y) ** 2 + (s * x + p * z) ** 2 + (p * y + q * x) ** 2)
             most = max(most, float((np.linalg.norm(poses.u[boxes], axis=1) + turns).max()))
         return most
 

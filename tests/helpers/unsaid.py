@@ -6,6 +6,7 @@ _MU = ("contacts.0.friction=0.25",)
 # by what a sample is called: its path below samples/, and its file
 UNSAID: dict[str, tuple[str, ...]] = {
     "landing": ("contacts.landing.air=null",),
+    "duplex": ("rules=[]", "require=[]"),
     "crease": ("materials.eur10.yield=null",),
     "register": ("rules=[]",),
     "sorter": (

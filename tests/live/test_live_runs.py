@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import base64
 import os
+import re
 import time
 from pathlib import Path
 from typing import Any
@@ -254,6 +255,39 @@ def test_a_requirement_has_its_verdict(tmp_path: Path) -> None:
         made.quiet()
         html = made.get("run")["html"]
         assert "FAIL</b> speed above 2000 mm/s" in html["headline"] and "pass</b> no jam" in html["headline"]
+
+
+def test_a_rule_s_delay_is_turned(tmp_path: Path) -> None:
+    """The mark of the rule and the note's way follow, and the file has the delay where it is written."""
+    look, eye = "when: eye covered, after: look, do", "[[70 mm, 0 mm, -5 mm], [70 mm, 0 mm, 5 mm]]"
+    near = eye.replace("70 mm", "40 mm")
+    changes = ((look, look.replace("look", "3 ms")), (eye, near), ("boxes: [10, 10]", "boxes: [2, 2]"))
+    spec = scene(tmp_path, "register", *changes, ("duration: 150 ms", "duration: 20 ms"))
+    with live(spec) as made:
+        made.quiet()
+        control = next(c for c in made.get("controls") if c["path"] == "rules.0.after")
+        assert (control["group"], control["number"], control["unit"]) == ("rules.0 (eye covered)", 3.0, "ms")
+        marks, ways = [_mark(made)], [travel(made)]
+        made.turn(rules__0__after="7 ms")
+        state = made.quiet()
+        assert state["turned"] == {"rules.0.after": "7 ms"} and state["errors"] == []
+        marks.append(_mark(made))
+        ways.append(travel(made))
+        assert made.post("write", {}) == (200, {})
+    assert marks[1] - marks[0] == pytest.approx(4.0, abs=0.01)
+    # 4 ms more at 1400 mm/s; the eye sees the edge at the same time
+    assert ways[1] - ways[0] == pytest.approx(4.0 * 1.4, abs=0.05)
+    assert ways[1] == pytest.approx(solved(spec), abs=0.01)
+    assert look.replace("look", "7 ms") in spec.read_text("utf-8")
+
+
+def _mark(made: Live) -> float:
+    """When the page says that rule 0 acted [ms]."""
+    (time,) = re.findall(
+        r'data-time="([\d.]+)"><line class="mark"[^>]*/>.{0,80}<title>rule 0',
+        made.get("run")["html"]["events"],
+    )
+    return float(time)
 
 
 def test_a_static_scene_is_run_without_a_draft(tmp_path: Path) -> None:

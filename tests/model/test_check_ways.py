@@ -190,6 +190,15 @@ def test_air_counts() -> None:
     assert with_air.seconds > 1.3 * plain.seconds
 
 
+def test_sheets_that_a_rule_lets_in_count() -> None:
+    sets = ["sensors={}", "require=[]", "rules=[{when: time >= 0 ms, do: {enter: infeed}}]"]
+    one, three = (
+        cost(lower(load(samples() / "sorter.yaml", [*sets, f"streams.infeed.count={k}"]))) for k in (1, 3)
+    )
+    # each of them is there for a third of the run
+    assert one and three and three.seconds > 1.5 * one.seconds
+
+
 def test_air_is_named_where_it_makes_a_run_long() -> None:
     assert ("W134", "contacts.landing.air") in [
         (hit.code, hit.where) for hit in found("landing", "run.duration=5 s", "run.step=30 us")

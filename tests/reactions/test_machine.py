@@ -52,6 +52,15 @@ def test_a_delay_counts_from_the_edge() -> None:
     assert len(looked) < 40
 
 
+def test_a_wide_sheet_in_a_bend_is_not_looked_at_more_often() -> None:
+    """A box that turns about its length across goes no faster than its short sides."""
+    model = wheel([stop()], note={"size": ["10 mm", "400 mm"]})
+    machine, still = Machine(model, SPEED), poses(model, 0.0)
+    turning = still._replace(w=np.array([[0.0, 0.2, 0.0]] * len(model.bodies.name)))
+    fastest = machine._fastest(machine._eyes[0], turning)
+    assert fastest == pytest.approx(SPEED + 0.2 * math.hypot(5.0, 0.05), rel=1e-9)
+
+
 def test_the_time_of_an_edge_is_second_order_in_the_step() -> None:
     a, model = 0.01, wheel([stop()])
     exact = (math.sqrt(SPEED**2 + 2.0 * a * 10.0) - SPEED) / a

@@ -54,6 +54,9 @@ PIECES = {
     # all of it, coarser, in tests/solvers/test_reacting_samples.py
     ("sorter", "auto"): ("run.duration=40 ms",),
     ("sorter", "exudyn"): ("sheets.note.boxes=[4,1]", "run.duration=10 ms", "run.tolerance=0.05"),
+    # all of it, coarser, in tests/solvers/test_duplex.py
+    ("duplex", "auto"): ("sheets.note.boxes=[10,1]", "run.duration=20 ms"),
+    ("duplex", "exudyn"): ("sheets.note.boxes=[4,1]", "run.duration=2 ms", "run.tolerance=0.05"),
     ("pick", "exudyn"): ("run.tolerance=0.01",),
     # until the second note has come in; tests/solvers/test_streams.py compares both solvers
     ("stream", "exudyn"): ("run.duration=62 ms", "sheets.note.boxes=[2,2]", "run.step=0.1 ms"),

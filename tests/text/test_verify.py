@@ -32,6 +32,7 @@ COARSE = {
     "feeder_one": ("sheets.note_1.boxes=[4, 6]",),
     "feeder": ("sheets.note_1.boxes=[4, 3]", "sheets.note_2.boxes=[3, 2]"),
     "register": (*UNSAID["register"], "sheets.note.boxes=[2, 2]"),
+    "duplex": (*UNSAID["duplex"], "sheets.note.boxes=[2, 1]"),
     **dict.fromkeys(("tilt_correction", "transport_4x2", "transport_nips", "transport_tilted"), FEW),
 }
 
