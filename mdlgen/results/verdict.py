@@ -174,13 +174,17 @@ def judge(result: Result, record: Mapping[str, Any]) -> list[Outcome]:
 
 
 def _judged(result: Result, record: Mapping[str, Any]) -> list[Outcome]:
-    found: list[Outcome] = []
-    for k, wanted in enumerate(map(requirement, result.model.require)):
-        try:
-            found.append(_event(wanted, record) if wanted.event else _limit(result, record, wanted))
-        except ValueError as error:
-            raise SpecError(f"{wanted.text!r}: {error}", ("require", k)) from None
-    return found
+    return [judged(result, record, k) for k in range(len(result.model.require))]
+
+
+def judged(result: Result, record: Mapping[str, Any], k: int) -> Outcome:
+    """The outcome of the requirement of index k, without doubt. Raises SpecError for a measure that the run
+    has not."""
+    wanted = requirement(result.model.require[k])
+    try:
+        return _event(wanted, record) if wanted.event else _limit(result, record, wanted)
+    except ValueError as error:
+        raise SpecError(f"{wanted.text!r}: {error}", ("require", k)) from None
 
 
 def doubts(
@@ -224,7 +228,10 @@ def _limit(result: Result, record: Mapping[str, Any], wanted: Requirement) -> Ou
     assert wanted.measure is not None, "a requirement without an event has a measure"
     if wanted.sensor is not None:
         return _at_sensor(record, wanted, wanted.sensor)
-    each = wanted.measure.partition(".")[0] not in record
+    head, dot, _ = wanted.measure.partition(".")
+    each = head not in record
+    if each and dot:
+        _in_each(record, head)
     names = _concerned(result, record, wanted) if each else [None]
     if not names:
         return Outcome(wanted.text, False, None, wanted.unit, None)
@@ -241,6 +248,17 @@ def _limit(result: Result, record: Mapping[str, Any], wanted: Requirement) -> Ou
     return Outcome(
         wanted.text, margin >= 0.0, value / per, shown, margin / per, of if len(names) > 1 else None
     )
+
+
+def _in_each(record: Mapping[str, Any], head: str) -> None:
+    """Raises ValueError where the head of a dotted name is neither a table nor a measure of each sheet."""
+    tables = [key for key, value in record.items() if isinstance(value, Mapping) and value]
+    own = [_bare(key) for sheet in record["sheets"].values() for key in sheet]
+    if head not in own:
+        known = list(dict.fromkeys([*tables, *own]))
+        raise ValueError(
+            f"there is no {head!r}{did_you_mean(head, known) or ';'} there are {', '.join(known)}"
+        )
 
 
 def _at_sensor(record: Mapping[str, Any], wanted: Requirement, sensor: str) -> Outcome:
@@ -350,7 +368,7 @@ def _key(node: Mapping[str, Any], part: str, path: str) -> tuple[str, str]:
             return f"{part}{end}", unit
     known = [_bare(key) for key in node]
     raise ValueError(
-        f"there is no {part!r} in {path}{did_you_mean(part, known)}; there are {', '.join(known)}"
+        f"there is no {part!r} in {path}{did_you_mean(part, known) or ';'} there are {', '.join(known)[:200]}"
     )
 
 

@@ -137,6 +137,19 @@ def test_what_cannot_be_judged_is_one_line_before_anything_runs(text: str, says:
     assert "\n" not in str(caught.value) and "require" in str(caught.value)
 
 
+def test_check_names_each_that_there_is_not_with_its_place(tmp_path: Path) -> None:
+    scene = tmp_path / "slide.yaml"
+    wrong = "[sheets.c.yaw within 1 deg, no jam,\n  planes.tt.nip_force below 1 N, shets.b.yaw below 1 deg]\n"
+    scene.write_text(f"{SLIDE}require: {wrong}")
+    done = CliRunner().invoke(app, ["check", str(scene)])
+    assert done.exit_code == 2
+    assert "slide.yaml:10:11: require.0: 'sheets.c.yaw within 1 deg': there is no 'c'" in done.output
+    assert "slide.yaml:11:3: require.2:" in done.output and "did you mean 't'?" in done.output
+    assert "there is no 'shets'; did you mean 'sheets'?" in done.output
+    with pytest.raises(SpecError, match="there is no 'c'"):
+        loads(scene.read_text(), "slide").check()
+
+
 def test_values_have_units_percentages_and_plain_numbers() -> None:
     assert requirement("x below 50 %").high == 0.5
     assert requirement("x above 0.2").low == 0.2 and requirement("x above 0.2").high == math.inf
