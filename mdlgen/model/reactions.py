@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from mdlgen.model.tables import Order, Reactions, RulePart, SensorPart
-from mdlgen.spec.reacting import COMMANDED, entering, place, seen, sense, states
+from mdlgen.spec.reacting import COMMANDED, beginning, entering, of_stream, place, seen, sense
 from mdlgen.spec.rule import Rule
 from mdlgen.spec.scene import Scene
 from mdlgen.spec.sensor import REACH
@@ -15,12 +15,15 @@ def lower_reactions(scene: Scene) -> Reactions:
     """The table of a scene's sensors, by name, and of its rules."""
     numbers = {name: k for k, name in enumerate(sorted(scene.sheets))}
     amounts = tuple((name, a.value, a.dimension) for name, a in scene.amounts.items()) if scene.rules else ()
-    named = states(scene)
     return Reactions(
         sensors=tuple(_sensor(scene, name, numbers) for name in sorted(scene.sensors)),
         rules=tuple(_rule(scene, rule) for rule in scene.rules),
         amounts=amounts,
-        begins=named[0] if named else "",
+        begins=beginning(scene),
+        streams=tuple(
+            (name, tuple(numbers[sheet] for sheet in of_stream(scene, name)))
+            for name in sorted(scene.streams)
+        ),
     )
 
 

@@ -21,6 +21,7 @@ from mdlgen.model.tables import Model, Order
 from mdlgen.reactions.known import of_states
 from mdlgen.reactions.sensing import FAR, Eye, Passing, Poses, between
 from mdlgen.reactions.sight import Sight
+from mdlgen.reactions.stays import Stays
 from mdlgen.units import PER_SECOND
 
 # What is that much of a step ahead is there: times are found to a part of that (convention; the time of an
@@ -86,7 +87,9 @@ class Machine:
         self._stage = _Stage([Sight() for _ in self._eyes], [False] * count, [0] * count, table.begins)
         self._before: tuple[float, Poses] | None = None
         self.log: list[dict[str, Any]] = []
-        self._there: NDArray[np.bool_] | None = None
+        self._stays = Stays(model)
+        self._named_stays = any(names & self._stays.words for names in named)
+        self._turned = False  # whether a sheet has come in or left since the last look, of which rules ask
 
     @property
     def ended(self) -> bool:
@@ -96,14 +99,14 @@ class Machine:
     @property
     def there(self) -> NDArray[np.bool_] | None:
         """Which sheets are in the machine, (sheets,); None: all."""
-        return self._there
+        return self._stays.there
 
     @there.setter
     def there(self, sheets: NDArray[np.bool_] | None) -> None:
-        if sheets is not None and not (self._there is not None and np.array_equal(sheets, self._there)):
+        if self._stays.turn(sheets):
+            self._turned = self._named_stays
             for sight in self._stage.sights:
                 sight.looks = 0.0  # a sheet that comes in, or leaves, does not move there
-        self._there = sheets
 
     # -- when to look
 
@@ -111,6 +114,8 @@ class Machine:
         """Up to which time from t on steps of a length may be taken before it looks again [ms]: at least to a
         part of one."""
         stage, until = self._stage, math.inf
+        if self._turned:
+            return t + SOON * step
         if stage.pending:
             until = min(time for time, _ in stage.pending)
         for k, eye in enumerate(self._eyes):
@@ -161,7 +166,8 @@ class Machine:
 
     def _seen(self, eye: Eye) -> list[int]:
         """The sheets that a sensor may see now."""
-        return eye.sheets if self._there is None else [k for k in eye.sheets if self._there[k]]
+        there = self.there
+        return eye.sheets if there is None else [k for k in eye.sheets if there[k]]
 
     def _changes(self, eye: Eye, sight: Sight, poses: Poses) -> bool:
         off = self._off(eye, poses)
@@ -195,7 +201,7 @@ class Machine:
 
         Raises RunawayError.
         """
-        stage = self._stage
+        stage, self._turned = self._stage, False
         edges = {self._eyes[edge.eye].name: edge for edge in self._edges(t, step, poses)}
         for edge in edges.values():
             self._see(edge)
@@ -258,7 +264,7 @@ class Machine:
         by = eye.passing(edge.sheet, edge.poses.of(eye.boxes[edge.sheet]))
         since = edge.time - sight.since
         sight.covered = not sight.covered
-        if self._there is not None and not self._there[edge.sheet]:  # it has left the machine
+        if self.there is not None and not self.there[edge.sheet]:  # it has left the machine
             by = Passing(sight.speed, sight.skew, sight.position)
         sight.speed, sight.skew, sight.position = by
         numbers: dict[str, Any] = {"speed_mm_per_s": by.speed * PER_SECOND}
@@ -326,6 +332,8 @@ class Machine:
                 return self._amounts[name]
             if name in self._of_states:
                 return self._of_states[name](poses)
+            if name in self._stays.words:
+                return self._stays.known(name)
             sensor, _, word = name.partition(".")
             return self._stage.sights[self._number[sensor]].known(t)[word]
 
@@ -342,6 +350,7 @@ class Machine:
             **{name: getattr(stage, name) for name in ("true", "fired", "state", "ended")},
             "pending": [list(entry) for entry in stage.pending],
             "before": before,
+            "stays": self._stays.kept(),
             "log": self.log,
         }
 
@@ -353,6 +362,7 @@ class Machine:
             setattr(stage, name, kept[name])
         stage.pending = [(time, rule) for time, rule in kept["pending"]]
         self._before = None if before is None else (before[0], Poses(*map(np.array, before[1:])))
+        self._stays.restore(kept["stays"])
         self.log = list(kept["log"])
 
 

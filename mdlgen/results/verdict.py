@@ -16,7 +16,7 @@ from mdlgen.results.over_time import series
 from mdlgen.results.passing import came, there
 from mdlgen.results.result import OK
 from mdlgen.results.sensors import MEASURES
-from mdlgen.spec.require import Requirement, requirement
+from mdlgen.spec.require import OF_SENSORS, Requirement, requirement
 from mdlgen.units import parse_unit, same
 
 if TYPE_CHECKING:
@@ -62,7 +62,12 @@ class Outcome:
         if self.value is None:
             return f"{verdict}  {self.requirement}: not known"
         if self.margin is None:
-            return f"{verdict}  {self.requirement}" + (f": {self.value:g} times" if self.value else "")
+            text = f"{verdict}  {self.requirement}"
+            if self.of:  # of several sheets the first for which it is not so
+                return f"{text}: {self.of}" + (f" and {self.value - 1:g} more" if self.value > 1 else "")
+            return text + (
+                f": {self.value:g} times" if self.value and self.requirement.startswith("no ") else ""
+            )
         unit = "" if self.unit in ("", "%") else f" {self.unit}"
         end = self.unit if self.unit == "%" else ""
         # what is small beside its distance from the limit is round-off
@@ -182,7 +187,9 @@ def judged(result: Result, record: Mapping[str, Any], k: int) -> Outcome:
     has not."""
     wanted = requirement(result.model.require[k])
     try:
-        return _event(wanted, record) if wanted.event else _limit(result, record, wanted)
+        if wanted.event:
+            return _event(wanted, record)
+        return _state(result, record, wanted) if wanted.state else _limit(result, record, wanted)
     except ValueError as error:
         raise SpecError(f"{wanted.text!r}: {error}", ("require", k)) from None
 
@@ -222,6 +229,26 @@ def _event(wanted: Requirement, record: Mapping[str, Any]) -> Outcome:
         parts = {event.get(key) for key in keys} | {*event.get("held_by", ())}
         count += event["kind"] == wanted.event and (wanted.part is None or wanted.part in parts)
     return Outcome(wanted.text, count == 0, float(count), "", None)
+
+
+def _state(result: Result, record: Mapping[str, Any], wanted: Requirement) -> Outcome:
+    """Of a sheet, each of a stream, or a sensor at the end; the value is how many are not so."""
+    part = str(wanted.part)
+    if wanted.state in OF_SENSORS:
+        wrong = [part] if record["sensors"][part]["covered"] == (wanted.state == "clear") else []
+        names = [part]
+    else:
+        streams = dict(result.model.reactions.streams)
+        names = [result.model.sheets[k].name for k in streams[part]] if part in streams else [part]
+        key = f"{wanted.state}_ms"
+        # one that is there throughout has no times
+        wrong = [
+            n for n in names if record["sheets"][n].get(key, 0.0 if key == "entered_ms" else None) is None
+        ]
+    if wanted.negated:
+        wrong = [name for name in names if name not in wrong]
+    of = wrong[0] if wrong and len(names) > 1 else None
+    return Outcome(wanted.text, not wrong, float(len(wrong)), "", None, of)
 
 
 def _limit(result: Result, record: Mapping[str, Any], wanted: Requirement) -> Outcome:

@@ -6,8 +6,9 @@ from collections.abc import Callable, Iterator
 from functools import partial
 from typing import TYPE_CHECKING
 
-from mdlgen.conditions import CLOCK, OF_ROLLER, OF_SENSOR, OF_SHEET, TIME, check, condition
-from mdlgen.formulas import Dimension
+from mdlgen.conditions import CLOCK, OF_ROLLER, OF_SENSOR, OF_SHEET, OF_STAY, TIME, check, condition
+from mdlgen.errors import did_you_mean
+from mdlgen.formulas import NONE, Dimension
 from mdlgen.spec.between import known, matching
 from mdlgen.spec.moving import Pivot, Slide
 from mdlgen.spec.nip import names_of
@@ -28,18 +29,26 @@ def words(scene: Scene) -> dict[str, Dimension | None]:
         (scene.sensors, OF_SENSOR),
         ((*scene.sheets, *scene.probes), OF_SHEET),
         (scene.rollers, OF_ROLLER),
+        (scene.sheets, dict.fromkeys(OF_STAY)),
+        (scene.streams, dict.fromkeys(OF_STAY, NONE)),
     ):
         found |= {f"{name}.{word}": dimension for name in names for word, dimension in of.items()}
     return found
 
 
-def states(scene: Scene) -> tuple[str, ...]:
-    """The states that the rules name, the first one first."""
-    return tuple(
-        dict.fromkeys(
-            name for rule in scene.rules for name in (*rule.in_, *((rule.do.go,) if rule.do.go else ()))
-        )
-    )
+def beginning(scene: Scene) -> str:
+    """The state in which the machine begins: the first one of the first rule that has to do with states.
+    Where that rule only goes to one the machine is in none until then: empty."""
+    for rule in scene.rules:
+        if rule.in_ or rule.do.go:
+            return rule.in_[0] if rule.in_ else ""
+    return ""
+
+
+def of_stream(scene: Scene, name: str) -> list[str]:
+    """The sheets of a stream."""
+    stream = scene.streams[name]
+    return sheets_of(name, {"count": stream.count, "times": stream.times})
 
 
 def seen(scene: Scene, name: str) -> list[str]:
@@ -111,7 +120,7 @@ def place(scene: Scene, name: str, to: str, path: tuple[str | int, ...]) -> floa
 def entering(scene: Scene, name: str, path: tuple[str | int, ...]) -> list[str]:
     """The sheets of a stream, or the sheet, that a command lets in, one at each time."""
     waiting = [n for n, sheet in scene.sheets.items() if sheet.by_rule]
-    names = sheets_of(name, {"count": scene.streams[name].count}) if name in scene.streams else [name]
+    names = of_stream(scene, name) if name in scene.streams else [name]
     found = [n for n in names if n in waiting]
     if not found:
         others = [n for n, stream in scene.streams.items() if stream.by_rule]
@@ -169,6 +178,18 @@ def _condition(scene: Scene, k: int, named: dict[str, Dimension | None]) -> None
         check(condition(rule.when), named, scene.amounts)
     except ValueError as error:
         raise fail(str(error), ("rules", k, "when")) from None
+    for name in condition(rule.when).expression.names:
+        thing, _, word = name.partition(".")
+        if word == "left":
+            leaves(scene, thing, ("rules", k, "when"))
+
+
+def leaves(scene: Scene, name: str, path: tuple[str | int, ...]) -> None:
+    """Raises the error where no sheet of that name, or of that stream, can leave."""
+    sheets = of_stream(scene, name) if name in scene.streams else [name]
+    if not any(scene.sheets[sheet].out for sheet in sheets):
+        key = f"streams.{name}" if name in scene.streams else f"sheets.{name}"
+        raise fail(f"{name} never leaves; give {key} out, as out: beyond x = 400 mm", path)
 
 
 def _action(scene: Scene, k: int) -> None:
@@ -183,9 +204,9 @@ def _action(scene: Scene, k: int) -> None:
                     place(scene, name, given.to, (*path, kind, pattern))
     for k, name in enumerate(rule.do.enter):
         entering(scene, name, (*path, "enter", k))
-    if rule.do.go is not None and not any(rule.do.go in other.in_ for other in scene.rules):
-        named = [name for other in scene.rules for name in other.in_]
-        known(rule.do.go, dict.fromkeys(named), "state of a rule's `in`", (*path, "go"))
+    named = dict.fromkeys(name for other in scene.rules for name in other.in_)
+    if rule.do.go is not None and rule.do.go not in named and did_you_mean(rule.do.go, named):
+        known(rule.do.go, named, "state of a rule's `in`", (*path, "go"))
 
 
 def _turns(scene: Scene, name: str, path: tuple[str | int, ...]) -> None:

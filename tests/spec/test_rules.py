@@ -81,7 +81,14 @@ def test_a_surface_goes_in_the_sense_of_its_own_drive() -> None:
             "give exactly one of speed and surface_speed",
         ),
         ({"rules": [rule(do={"press": {"motor_1_left": "1 N"}})]}, "there is no part 'motor_1_left'"),
-        ({"rules": [rule(do={"go": "there"})]}, "rules.0.do.go: there is no state of a rule's `in` 'there'"),
+        (
+            {"rules": [rule(do={"go": "wait"}), rule(**{"in": "waits"})]},
+            "rules.0.do.go: there is no state of a rule's `in` 'wait'; did you mean 'waits'?",
+        ),
+        ({"rules": [rule(when="note left")]}, "rules.0.when: note never leaves; give sheets.note out"),
+        ({"require": ["note left"]}, "require.0: note never leaves"),
+        ({"require": ["eie covered"]}, "require.0: there is no sensor 'eie'; did you mean 'eye'?"),
+        ({"require": ["infed left"]}, "require.0: there is no sheet or stream 'infed'; there are: note"),
         ({"rules": [rule()], "run.analysis": "static"}, "rules: rules act over time"),
         ({"rules": [rule()] * 201}, "rules: 201 rules; allowed are 200"),
         ({"require": ["gap at ear below 3 mm"]}, "require.0: there is no sensor 'ear'; there are: eye"),
@@ -115,6 +122,8 @@ def test_texts_refuse_rules_and_name_sensors(output: str) -> None:
         ({"rules": [rule(when="not eye covered")]}, set()),
         ({"rules": [rule(**{"in": "a"}), rule(**{"in": "b"})]}, {"W165"}),
         ({"rules": [rule(**{"in": "a", "do": {"go": "b"}}), rule(**{"in": "b"})]}, set()),
+        ({"rules": [rule(**{"in": "a", "do": {"go": "done"}})]}, {"W189"}),
+        ({"rules": [rule(**{"in": "a", "do": {"go": "done"}}), rule()]}, set()),
         (
             {
                 "rules": [
@@ -128,4 +137,4 @@ def test_texts_refuse_rules_and_name_sensors(output: str) -> None:
 )
 def test_lints(changes: dict[str, Any], codes: set[str]) -> None:
     found = {lint.code for lint in lints(mdlgen.lower(scene(**changes)))}
-    assert found & {"W165", "W166", "W167"} == codes
+    assert found & {"W165", "W166", "W167", "W189"} == codes
