@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator
+from fnmatch import fnmatchcase
 from functools import partial
 from typing import TYPE_CHECKING
 
@@ -11,7 +12,7 @@ from mdlgen.errors import did_you_mean
 from mdlgen.formulas import NONE, Dimension
 from mdlgen.spec.between import known, matching
 from mdlgen.spec.moving import Pivot, Slide
-from mdlgen.spec.nip import names_of
+from mdlgen.spec.nip import names_of as rollers_of
 from mdlgen.spec.stream import names_of as sheets_of
 from mdlgen.spec.strict import fail
 from mdlgen.units import parse_quantity
@@ -59,17 +60,27 @@ def seen(scene: Scene, name: str) -> list[str]:
     return list(dict.fromkeys(found))
 
 
+def of_nips(scene: Scene, pattern: str) -> dict[str, str]:
+    """The rollers of the nips that a name or a pattern means, each with its nip; none where a roller or a
+    plane has that name, or is meant by that pattern."""
+    if any(fnmatchcase(name, pattern) for name in (*scene.rollers, *scene.planes)):
+        return {}
+    nips = {name: nip for name, nip in scene.nips.items() if fnmatchcase(name, pattern)}
+    return {
+        roller: name
+        for name, nip in nips.items()
+        for roller in rollers_of(name, {"lower": nip.lower, "upper": nip.upper})
+    }
+
+
 def driven(scene: Scene, pattern: str, path: tuple[str | int, ...]) -> list[str]:
     """The driven rollers that a command means: by name, by pattern, or those of a nip or a shaft."""
     having = [name for name, roller in scene.rollers.items() if roller.drive is not None]
     if pattern in scene.shafts:
         shaft = scene.shafts[pattern]
         having, names = list(shaft.rollers if shaft.drive is not None else ()), list(shaft.rollers)
-    elif pattern in scene.nips:
-        nip = scene.nips[pattern]
-        names = list(names_of(pattern, {"lower": nip.lower, "upper": nip.upper}))
     else:
-        names = matching(pattern, scene.rollers, path)
+        names = list(of_nips(scene, pattern)) or matching(pattern, (*scene.rollers, *scene.nips), path)
     found = [name for name in names if name in having]
     if not found:
         others = [*having, *(name for name, shaft in scene.shafts.items() if shaft.drive is not None)]
@@ -129,9 +140,17 @@ def entering(scene: Scene, name: str, path: tuple[str | int, ...]) -> list[str]:
 
 
 def pressed(scene: Scene, pattern: str, path: tuple[str | int, ...]) -> list[str]:
-    """The rollers and planes with a press that a command means."""
+    """The rollers and planes with a press that a command means; of a nip the roller that has one."""
     having = {n: p for n, p in (scene.rollers | scene.planes).items() if p.press is not None}
-    return matching(pattern, having, path)
+    nips = of_nips(scene, pattern)
+    found = [name for name in nips if name in having]
+    if nips and not found:
+        raise fail(
+            f"no roller of nip {pattern} has a press; those that have one are: "
+            f"{', '.join(having)[:200] or 'none'}",
+            path,
+        )
+    return found or [name for name in matching(pattern, (*having, *scene.nips), path) if name in having]
 
 
 def on_arms(scene: Scene, pattern: str, path: tuple[str | int, ...]) -> list[str]:

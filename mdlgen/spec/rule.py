@@ -78,7 +78,7 @@ class Action(Strict):
     press: dict[str, Annotated[float, quantity("N")]] = Field(
         default_factory=dict,
         description="rollers or planes with `press`, and the force of the spring where it touches: "
-        "below 0 N it lifts",
+        "below 0 N it lifts; or nips, and the force with which each roller presses the sheet",
     )
     torque: dict[str, Annotated[float, quantity("N*mm")]] = Field(
         default_factory=dict,
