@@ -1,6 +1,6 @@
 """What a run costs, before it is run, and lints of what makes it cost so much.
 
-Counted are boxes, pairs of bodies by what they are of, cells of air, and steps. Fitted to the samples and
+Counted are boxes, pairs of bodies by what they are of, cells of air, stored states, sensors, rules, and steps. Fitted to the samples and
 to some of them on other grids and at other tolerances, on one core of some 3 GHz, with all that the solver
 lattice runs: the coarser runs from which the error is estimated, too. Of 19 transient samples processor
 time was 0.54 to 2.0 times what is said here. On other grids and at other tolerances it was 0.2 to 5 times:
@@ -19,10 +19,15 @@ import numpy as np
 from mdlgen.lints.lint import Lint
 from mdlgen.mechanics.film_grid import film_grids
 from mdlgen.model.parts.kinds import KINDS
-from mdlgen.model.passing import share
+from mdlgen.model.passing import passing, share
 from mdlgen.model.tables import BOX_BOX, Model
 
 START = 4e-3  # [s]
+# Outside the kernels [s]: of each state that is stored; of each step of a machine with rules, which is asked
+# whether it has to end early, and more with each sensor and each rule; of each step with sheets that come and
+# go. Fitted to samples stall, rubber_nip, register, sorter and stream, whose processor time is 0.5 to 1.9
+# times what is said here where that of transport_tilted is 1.
+OUTPUT, LOOK, SENSOR, RULE, PASSING = 0.2e-3, 0.05e-3, 0.02e-3, 0.01e-3, 0.08e-3
 PASSES = 1.8  # what the coarser runs add to the last one
 # Of one step [s]; BAND for each box and the square of the boxes on the shorter side of its sheet, which is
 # what a factor of its joints takes.
@@ -69,14 +74,15 @@ class _Size:
     cells: int  # of all films of air
     contact: bool  # of sheets of more than one box
     pressed: bool  # a plate
+    watched: float  # what sensors, rules, and sheets that come and go take of each step [s]
 
     def cost(self) -> Cost:
         """Of a transient run."""
         steps = max(self.duration / (self.step or self._step()), self.outputs, 1.0)
         laid = min(self.laid, MOST_LAID * self.boxes)
-        each = STEP + BOX * self.boxes + BAND * self.band
+        each = self.watched + STEP + BOX * self.boxes + BAND * self.band
         each += PAIR * self.plain + CURVED * self.curved + LAID * laid + AIR * self.cells
-        return Cost(START + PASSES * steps * each, math.ceil(steps))
+        return Cost(START + PASSES * (steps * each + self.outputs * OUTPUT), math.ceil(steps))
 
     def _step(self) -> float:
         """What the search for one comes to, about."""
@@ -124,6 +130,7 @@ def _size(model: Model) -> _Size:
         cells=len(film_grids(model).cells),
         contact=len(model.pairs) + beside > 0 and max(counts.values()) > 1,
         pressed=any(plane.press is not None for plane in model.planes),
+        watched=_watched(model),
     )
     if part == 1.0:
         return size
@@ -131,6 +138,12 @@ def _size(model: Model) -> _Size:
         name: math.ceil(part * getattr(size, name)) for name in ("boxes", "plain", "curved", "laid", "cells")
     }
     return replace(size, band=part * size.band, **counted)
+
+
+def _watched(model: Model) -> float:
+    """What Python does at each step [s]."""
+    of, found = model.reactions, PASSING if passing(model) else 0.0
+    return found + (LOOK + SENSOR * len(of.sensors) + RULE * len(of.rules) if of.rules else 0.0)
 
 
 def costly(model: Model) -> Iterator[Lint]:

@@ -36,6 +36,7 @@ MOST_AT_ONCE = 100
 # Steps ahead at most to which a condition of times alone is looked at, and in which a sensor is not looked at
 # (convention: a look costs as much as a small step, so a part of it then).
 AHEAD = 64
+_PLAIN = ("true", "fired", "state", "ended", "timed")  # what of a stage is kept as it is
 
 
 class RunawayError(Exception):
@@ -61,6 +62,7 @@ class _Stage:
     state: str
     pending: list[tuple[float, int]] = field(default_factory=list)  # times [ms] and rules that are due then
     ended: bool = False
+    timed: float = 0.0  # up to when no condition of times alone changes [ms], unless something else does
 
 
 class Machine:
@@ -128,7 +130,9 @@ class Machine:
             at = self._first(lambda ahead: self._changed(self._moving, t + ahead, poses.after(ahead)), step)
             until = min(until, t + at)
         if self._clocked:
-            until = min(until, self._next_time(t, step, poses))
+            if stage.timed <= t + step:
+                stage.timed = self._next_time(t, step, poses)
+            until = min(until, stage.timed)
         return max(until, t + SOON * step)
 
     def _next(self, eye: Eye, sight: Sight, t: float, step: float, poses: Poses) -> float:
@@ -201,18 +205,22 @@ class Machine:
 
         Raises RunawayError.
         """
-        stage, self._turned = self._stage, False
+        stage = self._stage
+        if self._turned:
+            stage.timed, self._turned = 0.0, False
         edges = {self._eyes[edge.eye].name: edge for edge in self._edges(t, step, poses)}
         for edge in edges.values():
             self._see(edge)
         seen = {name: edge.time for name, edge in edges.items()}
         orders: list[Order] = []
         acted: set[int] = set()
-        soon = SOON * step
+        soon, held = SOON * step, list(stage.true)
         for _ in range(MOST_AT_ONCE):
             if self._rules:
                 self._judge(t, poses.after(soon), soon, seen)
             due = sorted(entry for entry in stage.pending if entry[0] <= t + soon)
+            if edges or acted or stage.true != held:
+                stage.timed = 0.0
             if not due:
                 self._before = (t, poses.copy()) if self._eyes else None
                 return orders
@@ -335,7 +343,7 @@ class Machine:
             if name in self._stays.words:
                 return self._stays.known(name)
             sensor, _, word = name.partition(".")
-            return self._stage.sights[self._number[sensor]].known(t)[word]
+            return self._stage.sights[self._number[sensor]].known(word, t)
 
         return value
 
@@ -347,7 +355,7 @@ class Machine:
         before = None if self._before is None else [self._before[0], *(a.tolist() for a in self._before[1])]
         return {
             "sights": [vars(sight) for sight in stage.sights],
-            **{name: getattr(stage, name) for name in ("true", "fired", "state", "ended")},
+            **{name: getattr(stage, name) for name in _PLAIN},
             "pending": [list(entry) for entry in stage.pending],
             "before": before,
             "stays": self._stays.kept(),
@@ -358,7 +366,7 @@ class Machine:
         """Goes back to what `kept` gave."""
         stage, before = self._stage, kept["before"]
         stage.sights = [Sight(**sight) for sight in kept["sights"]]
-        for name in ("true", "fired", "state", "ended"):
+        for name in _PLAIN:
             setattr(stage, name, kept[name])
         stage.pending = [(time, rule) for time, rule in kept["pending"]]
         self._before = None if before is None else (before[0], Poses(*map(np.array, before[1:])))

@@ -191,3 +191,20 @@ def test_rules_act_as_sheets_come_in_and_leave() -> None:
         machine.restore(json.loads(json.dumps(machine.kept())))
         assert machine.ahead(t + 5e-4, 0.5, poses(model, t)) > t + 0.4
     assert [row["rule"] for row in machine.log if row["kind"] == "rule"] == [0, 1, 2] and machine.ended
+
+
+def test_times_ahead_are_looked_at_once(monkeypatch: pytest.MonkeyPatch) -> None:
+    rules = [{"when": "time > 50 ms or note.vx < 0 m/s and eye covered", "do": {"end": True}}]
+    rules += [{"when": "time > 52 ms", "do": {"speed": {"w": "1 rad/s"}}}]
+    asked: list[int] = []
+    own = Machine._changed
+
+    def counted(machine: Machine, which, t, at) -> bool:
+        asked.append(len(which))
+        return own(machine, which, t, at)
+
+    monkeypatch.setattr(Machine, "_changed", counted)
+    _, orders, looked = followed(wheel(rules), 0.5, 60.0)
+    assert [t for t, order in orders if order.kind == "speed"] == pytest.approx([52.0], abs=1e-3)
+    # the first rule is asked at each step; the second one 64 steps ahead at once, and once more after an edge
+    assert len(asked) < 3 * len(looked) + 400
