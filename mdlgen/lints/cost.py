@@ -1,10 +1,11 @@
 """What a run costs, before it is run, and lints of what makes it cost so much.
 
-Counted are boxes, pairs of bodies by what they are of, cells of air, stored states, sensors, rules, and steps. Fitted to the samples and
-to some of them on other grids and at other tolerances, on one core of some 3 GHz, with all that the solver
-lattice runs: the coarser runs from which the error is estimated, too. Of 19 transient samples processor
-time was 0.54 to 2.0 times what is said here. On other grids and at other tolerances it was 0.2 to 5 times:
-the step is halved until the estimate is within the tolerance, and how often is not known ahead. Where two
+Counted are boxes, pairs of bodies by what they are of, cells of air, steps, stored states, sensors and rules.
+Fitted to the samples and to some of them on other grids and at other tolerances, on one core of some 3 GHz,
+with all that the solver lattice runs: the coarser runs from which the error is estimated, too. Of 19
+transient samples processor time was 0.54 to 2.0 times what is said here. On other grids and at other
+tolerances it was 0.2 to 5 times: the step is halved until the estimate is within the tolerance, and how often
+is not known ahead. Where two
 processors run two passes at a time, a run takes about two thirds of it.
 """
 
