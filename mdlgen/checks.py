@@ -97,6 +97,7 @@ CHECKS: tuple[Callable[[Model], Iterator[Lint]], ...] = (
     reactions.sees_nothing,
     reactions.never,
     reactions.fights,
+    reactions.dead_end,
     gates.sweeps,
     gates.unused,
     gates.late,

@@ -1,7 +1,8 @@
 """Conditions of rules: comparisons over what sensors see, times, places and parameters, with units checked.
 
 `exit covered and count(exit) < 3`, `gap(entry) < 20 mm`, `time > 30 ms`, `note.x > 120 mm`. A word asks for
-the reading of a sensor: `covered(exit)` or `exit covered`, `count(exit)`, `gap(exit)`. Values are in the
+the reading of a sensor: `covered(exit)` or `exit covered`, `count(exit)`, `gap(exit)`. It also asks if a sheet
+has come in or left, `note_3 left`, or how many sheets of a stream have, `left(infeed)`. Values are in the
 internal units (mm, g, ms, rad).
 """
 
@@ -39,22 +40,42 @@ OF_SHEET: dict[str, Dimension | None] = {
     **dict.fromkeys(("x", "y", "z"), LENGTH),
     **dict.fromkeys(("vx", "vy", "vz", "speed"), SPEED),
 }
+# Whether a sheet that comes and goes has come in, and has left; of a stream how many have.
+OF_STAY = ("entered", "left")
 OF_ROLLER: dict[str, Dimension | None] = {"omega": RATE}
 CLOCK = "time"
 
-_CALL = re.compile(rf"\b({'|'.join(OF_SENSOR)})\s*\(\s*([A-Za-z]\w*)\s*\)", re.ASCII)
-_STATE = re.compile(r"\b([A-Za-z]\w*)\s+(covered|clear)\b", re.ASCII)
+_CALL = re.compile(rf"\b({'|'.join((*OF_SENSOR, *OF_STAY))})\s*\(\s*([A-Za-z]\w*)\s*\)", re.ASCII)
+# what may stand behind a name, and two names of which the second one is none of these
+_SAID = ("covered", "clear", "entered", "left")
 _LOGIC = ("and", "or", "not")
+_STATE = re.compile(rf"\b([A-Za-z]\w*)\s+({'|'.join(_SAID)})\b", re.ASCII)
+_SIDE_BY_SIDE = re.compile(
+    rf"\b(?!(?:{'|'.join(_LOGIC)})\b)([A-Za-z]\w*)\s+(?!(?:and|or)\b)([A-Za-z]\w*)", re.ASCII
+)
 GRAMMAR = Grammar(
     functions=FORMULAS.functions,
     allowed="comparisons with and, or, not; SENSOR covered, SENSOR clear; count, gap, speed, skew, position "
-    "and since of a sensor, as count(exit); time; NAME.x, .y, .z, .vx, .vy, .vz and .speed of a sheet or "
-    "probe; NAME.omega of a roller; parameters, numbers with units, + - * / ^, ( ), sqrt, abs, min, max",
+    "and since of a sensor, as count(exit); SHEET entered, SHEET left; entered(STREAM), "
+    "left(STREAM); time; NAME.x, .y, .z, .vx, .vy, .vz and .speed of a sheet or "
+    "probe; NAME.omega of a roller; parameters, numbers with units, + - * / % ^, ( ), sqrt, abs, min, max",
     logic=True,
     units=True,
+    remainder=True,
     characters=1000,
     depth=16,
 )
+# what to write in place of the name of a sensor, sheet, stream or roller alone
+_ALONE = {
+    "covered": "{} covered",
+    "clear": "{} clear",
+    "count": "count({}) > 0",
+    "x": "{}.x > 5 mm",
+    "entered": "{} entered",
+    "left": "{} left",
+    "left of a stream": "left({}) > 0",
+    "omega": "{}.omega > 1 rad/s",
+}
 Known = Callable[[str], Amount | float]
 
 
@@ -85,6 +106,12 @@ def condition(text: str) -> Condition:
     try:
         return Condition(text.strip(), read(plain, GRAMMAR))
     except Refused as error:
+        if found := _SIDE_BY_SIDE.search(plain):
+            close = did_you_mean(found[2], _SAID) or ";"
+            raise ValueError(
+                f"{text.strip()[:80]!r}: {found[0]!r} is not understood{close} behind a name stands "
+                f"{', '.join(_SAID[:-1])} or {_SAID[-1]}, and between two conditions and or or"
+            ) from None
         raise ValueError(f"{text.strip()[:80]!r}: {error}; allowed are {GRAMMAR.allowed}") from None
 
 
@@ -110,10 +137,17 @@ def check(of: Condition, words: Mapping[str, Dimension | None], parameters: Mapp
             raise ValueError(
                 f"there is no {thing!r}{did_you_mean(thing, things) or ';'} there are {_listed(things)}"
             )
-        known = [*parameters, CLOCK]
+        known = dict.fromkeys([*parameters, CLOCK, *(n.partition(".")[0] for n in words)])
         raise ValueError(f"there is no {name!r}{did_you_mean(name, known) or ';'} there are {_listed(known)}")
 
     shown = f"{of.text[:80]!r}"
+    plain = [name for name in of.expression.names if name not in words and name not in parameters]
+    for name in plain:
+        own = {n.partition(".")[2]: dimension for n, dimension in words.items() if n.startswith(f"{name}.")}
+        own = {"left of a stream": NONE} if own.get("left") == NONE else own
+        ways = [say.format(name) for word, say in _ALONE.items() if word in own]
+        if ways:
+            raise ValueError(f"{shown}: {name} alone says nothing; write {', or '.join(ways[:3])}")
     try:
         _check(of.expression.tree, of.expression, named)
     except ZeroDivisionError:

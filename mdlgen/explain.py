@@ -318,6 +318,10 @@ SCENE = {
         "Its boxes are watched in bounds that follow from all that may move them in the run, and the plane "
         "is outside of these. A sheet that never leaves costs time to the end of the run."
     ),
+    "W189": (
+        "A rule sends the machine to a state that no `in` names, and each rule has an `in`: from then on no "
+        "rule acts. That may be the end that is meant, or the state is misspelt."
+    ),
     "W183": "A load, or gravity, has a factor over time that is 0 from the start of the run to its end.",
     "W184": (
         "A factor over time has corners after the end of the run. What it does there is not simulated. A "

@@ -48,6 +48,7 @@ class Grammar:
     allowed: str  # in words, for errors
     logic: bool = False  # comparisons, and, or, not
     units: bool = False  # numbers have units, and a power may be written ^
+    remainder: bool = False  # a % b is what is left of a by whole multiples of b, of the sign of b
     folded: bool = False  # functions without regard to case; their names are lower
     characters: int = 1000
     depth: int = 40  # of operations in operations; those of one rank side by side are one
@@ -74,6 +75,7 @@ _OPERATORS: dict[type, Callable[[float, float], Any]] = {
     ast.Mult: operator.mul,
     ast.Div: operator.truediv,
     ast.Pow: operator.pow,
+    ast.Mod: operator.mod,
 }
 _COMPARISONS: dict[type, Callable[[float, float], Any]] = {
     ast.Lt: operator.lt,
@@ -277,7 +279,7 @@ def _refusal(node: ast.AST, grammar: Grammar, depth: int) -> str:
             inner = [operand]
         case ast.UnaryOp(op=ast.USub() | ast.UAdd(), operand=operand):
             inner = [operand]
-        case ast.BinOp(op=op) if type(op) in _OPERATORS:
+        case ast.BinOp(op=op) if type(op) in _OPERATORS and (grammar.remainder or type(op) is not ast.Mod):
             parts, left = [node.right], node.left
             while isinstance(left, ast.BinOp) and isinstance(left.op, _SIDE_BY_SIDE):
                 parts.append(left.right)

@@ -57,6 +57,9 @@ class _Units:
         if operation is ast.Add or operation is ast.Sub:
             _same_unit("a sum" if operation is ast.Add else "a difference", a, b)
             return Amount(a.value + b.value if operation is ast.Add else a.value - b.value, a.dimension)
+        if operation is ast.Mod:
+            _same_unit("a remainder", a, b)
+            return Amount(a.value % b.value, a.dimension)
         if operation is ast.Mult:
             return Amount(a.value * b.value, _product(a.dimension, b.dimension))
         if operation is ast.Div:

@@ -102,8 +102,10 @@ def check(
     from mdlgen.lints.smoothing import notice
     from mdlgen.report.overview import overview
     from mdlgen.report.text import overview_text
+    from mdlgen.results.required import check as check_required
 
     model = model_of(spec, sets, limits)
+    check_required(model)
     found = overview(model)
     if as_json:
         echo_json(found)

@@ -1,8 +1,8 @@
 """Predicts the cost of a run before it starts, and lints of the inputs that make it expensive.
 
-The cost counts boxes, pairs of bodies by kind, cells of air, and steps. It is fitted to the samples and to
-some of them on other grids and at other tolerances. It holds for one core of some 3 GHz and the solver
-lattice with all its runs, those at coarser steps for the error estimate included.
+The cost counts boxes, pairs of bodies by kind, cells of air, steps, stored states, sensors and rules. It is
+fitted to the samples and to some of them on other grids and at other tolerances. It holds for one core of some
+3 GHz and the solver lattice with all its runs, those at coarser steps for the error estimate included.
 
 The processor time of 19 transient samples was 0.54 to 2.0 times the prediction. On other grids and at other
 tolerances it was 0.2 to 5 times. The reason: the step is halved until the estimate is within the tolerance,
@@ -20,10 +20,15 @@ import numpy as np
 from mdlgen.lints.lint import Lint
 from mdlgen.mechanics.film_grid import film_grids
 from mdlgen.model.parts.kinds import KINDS
-from mdlgen.model.passing import share
+from mdlgen.model.passing import passing, share
 from mdlgen.model.tables import BOX_BOX, Model
 
 START = 4e-3  # [s]
+# Outside the kernels [s]: of each state that is stored; of each step of a machine with rules, which is asked
+# whether it has to end early, and more with each sensor and each rule; of each step with sheets that come and
+# go. Fitted to samples stall, rubber_nip, register, sorter and stream, whose processor time is 0.5 to 1.9
+# times what is said here where that of transport_tilted is 1.
+OUTPUT, LOOK, SENSOR, RULE, PASSING = 0.2e-3, 0.05e-3, 0.02e-3, 0.01e-3, 0.08e-3
 PASSES = 1.8  # what the coarser runs add to the last one
 # Of one step [s]; BAND for each box and the square of the boxes on the shorter side of its sheet, which is
 # what a factor of its joints takes.
@@ -70,14 +75,15 @@ class _Size:
     cells: int  # of all films of air
     contact: bool  # of sheets of more than one box
     pressed: bool  # a plate
+    watched: float  # what sensors, rules, and sheets that come and go take of each step [s]
 
     def cost(self) -> Cost:
         """Cost of a transient run."""
         steps = max(self.duration / (self.step or self._step()), self.outputs, 1.0)
         laid = min(self.laid, MOST_LAID * self.boxes)
-        each = STEP + BOX * self.boxes + BAND * self.band
+        each = self.watched + STEP + BOX * self.boxes + BAND * self.band
         each += PAIR * self.plain + CURVED * self.curved + LAID * laid + AIR * self.cells
-        return Cost(START + PASSES * steps * each, math.ceil(steps))
+        return Cost(START + PASSES * (steps * each + self.outputs * OUTPUT), math.ceil(steps))
 
     def _step(self) -> float:
         """Approximate step that the search for a step ends at [ms]."""
@@ -125,6 +131,7 @@ def _size(model: Model) -> _Size:
         cells=len(film_grids(model).cells),
         contact=len(model.pairs) + beside > 0 and max(counts.values()) > 1,
         pressed=any(plane.press is not None for plane in model.planes),
+        watched=_watched(model),
     )
     if part == 1.0:
         return size
@@ -132,6 +139,12 @@ def _size(model: Model) -> _Size:
         name: math.ceil(part * getattr(size, name)) for name in ("boxes", "plain", "curved", "laid", "cells")
     }
     return replace(size, band=part * size.band, **counted)
+
+
+def _watched(model: Model) -> float:
+    """What Python does at each step [s]."""
+    of, found = model.reactions, PASSING if passing(model) else 0.0
+    return found + (LOOK + SENSOR * len(of.sensors) + RULE * len(of.rules) if of.rules else 0.0)
 
 
 def costly(model: Model) -> Iterator[Lint]:

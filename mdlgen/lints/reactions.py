@@ -63,6 +63,24 @@ def fights(model: Model) -> Iterator[Lint]:
                 )
 
 
+def dead_end(model: Model) -> Iterator[Lint]:
+    """States that rules go to, and in which no rule holds."""
+    rules = model.reactions.rules
+    known = {state for rule in rules for state in rule.states}
+    if not all(rule.states for rule in rules):
+        return
+    for k, rule in enumerate(rules):
+        ends = any(order.kind == "end" for order in rule.orders)
+        for order in rule.orders:
+            if order.kind == "go" and order.name not in known and not ends:
+                yield Lint(
+                    "W189",
+                    f"rules.{k}.do.go",
+                    f"no rule holds in the state {order.name}: from then on nothing reacts",
+                    f"give a rule in: {order.name}, or go to one of {', '.join(sorted(known))[:100]}",
+                )
+
+
 def _what(order: Order) -> tuple[tuple[str, str], tuple[str | float, float]]:
     """The part and quantity that an order changes, and the value that it asks for."""
     if order.kind == "go":

@@ -149,7 +149,7 @@ def _lower(scene: Scene) -> Model:
         revision=scene.revision or "",
         plastic=plastic,
         corners=corners,
-        reactions=lower_reactions(scene),
+        reactions=lower_reactions(scene, contacts),
         gravity_profile=profile,
     )
 

@@ -4,23 +4,26 @@ from __future__ import annotations
 
 import numpy as np
 
-from mdlgen.model.tables import Order, Reactions, RulePart, SensorPart
-from mdlgen.spec.reacting import COMMANDED, entering, place, seen, sense, states
+from mdlgen.model.tables import Contacts, Order, Reactions, RulePart, SensorPart
+from mdlgen.spec.reacting import COMMANDED, beginning, entering, of_nips, of_stream, place, seen, sense
 from mdlgen.spec.rule import Rule
 from mdlgen.spec.scene import Scene
 from mdlgen.spec.sensor import REACH
 
 
-def lower_reactions(scene: Scene) -> Reactions:
+def lower_reactions(scene: Scene, contacts: Contacts) -> Reactions:
     """The table of a scene's sensors, by name, and of its rules."""
     numbers = {name: k for k, name in enumerate(sorted(scene.sheets))}
     amounts = tuple((name, a.value, a.dimension) for name, a in scene.amounts.items()) if scene.rules else ()
-    named = states(scene)
     return Reactions(
         sensors=tuple(_sensor(scene, name, numbers) for name in sorted(scene.sensors)),
-        rules=tuple(_rule(scene, rule) for rule in scene.rules),
+        rules=tuple(_rule(scene, contacts, rule) for rule in scene.rules),
         amounts=amounts,
-        begins=named[0] if named else "",
+        begins=beginning(scene),
+        streams=tuple(
+            (name, tuple(numbers[sheet] for sheet in of_stream(scene, name)))
+            for name in sorted(scene.streams)
+        ),
     )
 
 
@@ -38,7 +41,32 @@ def _sensor(scene: Scene, name: str, numbers: dict[str, int]) -> SensorPart:
     return SensorPart(name, kind, ends, way, sensor.hysteresis, sheets)
 
 
-def _rule(scene: Scene, rule: Rule) -> RulePart:
+def _spring(scene: Scene, contacts: Contacts, nip: str, force: float) -> float:
+    """The force of a nip's spring where its rollers just touch [N], with which each presses the sheet with a
+    force [N]; as the preload follows from `force` of the nip, in `spec.nip`."""
+    spec = scene.nips[nip]
+    roller = next(name for name in of_nips(scene, nip) if scene.rollers[name].press is not None)
+    press, thick = scene.rollers[roller].press, scene.sheets[_between(scene, contacts, nip)].thickness
+    assert press is not None, "chosen so"
+    stiffness = {contacts.called(row): float(k) for row, k in enumerate(contacts.stiffness)}
+    depths = [stiffness[f"{nip}_{side}"] for side in ("lower", "upper")]
+
+    def found(pressed: float) -> float:
+        if nip not in stiffness:  # the rollers do not meet
+            return pressed
+        left = thick - sum((max(0.0, pressed) / k) ** (2.0 / 3.0) for k in depths)
+        return pressed - press.stiffness * left + stiffness[nip] * max(0.0, -left) ** 1.5
+
+    return press.preload + found(force) - found(spec.force)
+
+
+def _between(scene: Scene, contacts: Contacts, nip: str) -> str:
+    """A sheet that a nip grips; of a stream all are like."""
+    row = next(row for row in range(len(contacts)) if contacts.called(row) == f"{nip}_lower")
+    return next(name for name in (contacts.part_a[row], contacts.part_b[row]) if name in scene.sheets)
+
+
+def _rule(scene: Scene, contacts: Contacts, rule: Rule) -> RulePart:
     orders: list[Order] = []
     numbers = {name: k for k, name in enumerate(sorted(scene.sheets))}
     for kind, of in COMMANDED.items():
@@ -46,6 +74,9 @@ def _rule(scene: Scene, rule: Rule) -> RulePart:
             for name in of(scene, pattern, ()):
                 if kind == "move":
                     orders.append(Order(kind, name, place(scene, name, given.to, ()), given.in_))
+                    continue
+                if kind == "press" and name in (nips := of_nips(scene, pattern)):
+                    orders.append(Order(kind, name, _spring(scene, contacts, nips[name], given), 0.0))
                     continue
                 if kind != "speed":
                     orders.append(Order(kind, name, given, 0.0))

@@ -23,6 +23,7 @@ from mdlgen.model.tables import Model, Order
 from mdlgen.reactions.known import of_states
 from mdlgen.reactions.sensing import FAR, Eye, Passing, Poses, between
 from mdlgen.reactions.sight import Sight
+from mdlgen.reactions.stays import Stays
 from mdlgen.units import PER_SECOND
 
 # An event less than this part of a step ahead counts as reached: times are found to that accuracy
@@ -37,6 +38,7 @@ MOST_AT_ONCE = 100
 # Steps ahead at most to which a condition of times alone is looked at, and in which a sensor is not looked at
 # (convention: a look costs as much as a small step, so a part of it then).
 AHEAD = 64
+_PLAIN = ("true", "fired", "state", "ended", "timed")  # what of a stage is kept as it is
 
 
 class RunawayError(Exception):
@@ -62,6 +64,7 @@ class _Stage:
     state: str
     pending: list[tuple[float, int]] = field(default_factory=list)  # times [ms] and rules that are due then
     ended: bool = False
+    timed: float = 0.0  # up to when no condition of times alone changes [ms], unless something else does
 
 
 class Machine:
@@ -88,7 +91,9 @@ class Machine:
         self._stage = _Stage([Sight() for _ in self._eyes], [False] * count, [0] * count, table.begins)
         self._before: tuple[float, Poses] | None = None
         self.log: list[dict[str, Any]] = []
-        self._there: NDArray[np.bool_] | None = None
+        self._stays = Stays(model)
+        self._named_stays = any(names & self._stays.words for names in named)
+        self._turned = False  # whether a sheet has come in or left since the last look, of which rules ask
 
     @property
     def ended(self) -> bool:
@@ -98,14 +103,14 @@ class Machine:
     @property
     def there(self) -> NDArray[np.bool_] | None:
         """A mask of the sheets in the machine, (sheets,); None: all."""
-        return self._there
+        return self._stays.there
 
     @there.setter
     def there(self, sheets: NDArray[np.bool_] | None) -> None:
-        if sheets is not None and not (self._there is not None and np.array_equal(sheets, self._there)):
+        if self._stays.turn(sheets):
+            self._turned = self._named_stays
             for sight in self._stage.sights:
                 sight.looks = 0.0  # a sheet that comes in, or leaves, does not move there
-        self._there = sheets
 
     # -- when to look
 
@@ -113,6 +118,8 @@ class Machine:
         """Up to which time from t on steps of a length may be taken before it looks again [ms]: at least to a
         part of one."""
         stage, until = self._stage, math.inf
+        if self._turned:
+            return t + SOON * step
         if stage.pending:
             until = min(time for time, _ in stage.pending)
         for k, eye in enumerate(self._eyes):
@@ -125,7 +132,9 @@ class Machine:
             at = self._first(lambda ahead: self._changed(self._moving, t + ahead, poses.after(ahead)), step)
             until = min(until, t + at)
         if self._clocked:
-            until = min(until, self._next_time(t, step, poses))
+            if stage.timed <= t + step:
+                stage.timed = self._next_time(t, step, poses)
+            until = min(until, stage.timed)
         return max(until, t + SOON * step)
 
     def _next(self, eye: Eye, sight: Sight, t: float, step: float, poses: Poses) -> float:
@@ -163,7 +172,8 @@ class Machine:
 
     def _seen(self, eye: Eye) -> list[int]:
         """The sheets that a sensor may see now."""
-        return eye.sheets if self._there is None else [k for k in eye.sheets if self._there[k]]
+        there = self.there
+        return eye.sheets if there is None else [k for k in eye.sheets if there[k]]
 
     def _changes(self, eye: Eye, sight: Sight, poses: Poses) -> bool:
         off = self._off(eye, poses)
@@ -201,17 +211,21 @@ class Machine:
         Raises RunawayError.
         """
         stage = self._stage
+        if self._turned:
+            stage.timed, self._turned = 0.0, False
         edges = {self._eyes[edge.eye].name: edge for edge in self._edges(t, step, poses)}
         for edge in edges.values():
             self._see(edge)
         seen = {name: edge.time for name, edge in edges.items()}
         orders: list[Order] = []
         acted: set[int] = set()
-        soon = SOON * step
+        soon, held = SOON * step, list(stage.true)
         for _ in range(MOST_AT_ONCE):
             if self._rules:
                 self._judge(t, poses.after(soon), soon, seen)
             due = sorted(entry for entry in stage.pending if entry[0] <= t + soon)
+            if edges or acted or stage.true != held:
+                stage.timed = 0.0
             if not due:
                 self._before = (t, poses.copy()) if self._eyes else None
                 return orders
@@ -263,7 +277,7 @@ class Machine:
         by = eye.passing(edge.sheet, edge.poses.of(eye.boxes[edge.sheet]))
         since = edge.time - sight.since
         sight.covered = not sight.covered
-        if self._there is not None and not self._there[edge.sheet]:  # it has left the machine
+        if self.there is not None and not self.there[edge.sheet]:  # it has left the machine
             by = Passing(sight.speed, sight.skew, sight.position)
         sight.speed, sight.skew, sight.position = by
         numbers: dict[str, Any] = {"speed_mm_per_s": by.speed * PER_SECOND}
@@ -331,8 +345,10 @@ class Machine:
                 return self._amounts[name]
             if name in self._of_states:
                 return self._of_states[name](poses)
+            if name in self._stays.words:
+                return self._stays.known(name)
             sensor, _, word = name.partition(".")
-            return self._stage.sights[self._number[sensor]].known(t)[word]
+            return self._stage.sights[self._number[sensor]].known(word, t)
 
         return value
 
@@ -344,9 +360,10 @@ class Machine:
         before = None if self._before is None else [self._before[0], *(a.tolist() for a in self._before[1])]
         return {
             "sights": [vars(sight) for sight in stage.sights],
-            **{name: getattr(stage, name) for name in ("true", "fired", "state", "ended")},
+            **{name: getattr(stage, name) for name in _PLAIN},
             "pending": [list(entry) for entry in stage.pending],
             "before": before,
+            "stays": self._stays.kept(),
             "log": self.log,
         }
 
@@ -354,10 +371,11 @@ class Machine:
         """Goes back to what `kept` gave."""
         stage, before = self._stage, kept["before"]
         stage.sights = [Sight(**sight) for sight in kept["sights"]]
-        for name in ("true", "fired", "state", "ended"):
+        for name in _PLAIN:
             setattr(stage, name, kept[name])
         stage.pending = [(time, rule) for time, rule in kept["pending"]]
         self._before = None if before is None else (before[0], Poses(*map(np.array, before[1:])))
+        self._stays.restore(kept["stays"])
         self.log = list(kept["log"])
 
 

@@ -22,15 +22,9 @@ class Sight:
     position: float = math.nan
     looks: float = 0.0  # when it is looked at next
 
-    def known(self, t: float) -> dict[str, Amount | float]:
-        values = {
-            "count": float(self.count),
-            "since": t - self.since,
-            **{name: getattr(self, name) for name in ("gap", "speed", "skew", "position")},
-        }
-        found: dict[str, Amount | float] = {"covered": float(self.covered), "clear": float(not self.covered)}
-        for name, value in values.items():
-            dimension = OF_SENSOR[name]
-            assert dimension is not None, "they are numbers"
-            found[name] = Amount(value, dimension)
-        return found
+    def known(self, word: str, t: float) -> Amount | float:
+        """What it knows at the time t by a word of conditions.OF_SENSOR."""
+        dimension = OF_SENSOR[word]
+        if dimension is None:
+            return float(self.covered == (word == "covered"))
+        return Amount(t - self.since if word == "since" else float(getattr(self, word)), dimension)

@@ -16,7 +16,7 @@ from mdlgen.results.over_time import series
 from mdlgen.results.passing import came, there
 from mdlgen.results.result import OK
 from mdlgen.results.sensors import MEASURES
-from mdlgen.spec.require import Requirement, requirement
+from mdlgen.spec.require import OF_SENSORS, Requirement, requirement
 from mdlgen.units import parse_unit, same
 
 if TYPE_CHECKING:
@@ -62,7 +62,12 @@ class Outcome:
         if self.value is None:
             return f"{verdict}  {self.requirement}: not known"
         if self.margin is None:
-            return f"{verdict}  {self.requirement}" + (f": {self.value:g} times" if self.value else "")
+            text = f"{verdict}  {self.requirement}"
+            if self.of:  # of several sheets the first for which it is not so
+                return f"{text}: {self.of}" + (f" and {self.value - 1:g} more" if self.value > 1 else "")
+            return text + (
+                f": {self.value:g} times" if self.value and self.requirement.startswith("no ") else ""
+            )
         unit = "" if self.unit in ("", "%") else f" {self.unit}"
         end = self.unit if self.unit == "%" else ""
         # a value that is small compared with its distance from the limit is round-off
@@ -174,13 +179,19 @@ def judge(result: Result, record: Mapping[str, Any]) -> list[Outcome]:
 
 
 def _judged(result: Result, record: Mapping[str, Any]) -> list[Outcome]:
-    found: list[Outcome] = []
-    for k, wanted in enumerate(map(requirement, result.model.require)):
-        try:
-            found.append(_event(wanted, record) if wanted.event else _limit(result, record, wanted))
-        except ValueError as error:
-            raise SpecError(f"{wanted.text!r}: {error}", ("require", k)) from None
-    return found
+    return [judged(result, record, k) for k in range(len(result.model.require))]
+
+
+def judged(result: Result, record: Mapping[str, Any], k: int) -> Outcome:
+    """The outcome of the requirement of index k, without doubt. Raises SpecError for a measure that the run
+    has not."""
+    wanted = requirement(result.model.require[k])
+    try:
+        if wanted.event:
+            return _event(wanted, record)
+        return _state(result, record, wanted) if wanted.state else _limit(result, record, wanted)
+    except ValueError as error:
+        raise SpecError(f"{wanted.text!r}: {error}", ("require", k)) from None
 
 
 def doubts(
@@ -220,11 +231,34 @@ def _event(wanted: Requirement, record: Mapping[str, Any]) -> Outcome:
     return Outcome(wanted.text, count == 0, float(count), "", None)
 
 
+def _state(result: Result, record: Mapping[str, Any], wanted: Requirement) -> Outcome:
+    """Of a sheet, each of a stream, or a sensor at the end; the value is how many are not so."""
+    part = str(wanted.part)
+    if wanted.state in OF_SENSORS:
+        wrong = [part] if record["sensors"][part]["covered"] == (wanted.state == "clear") else []
+        names = [part]
+    else:
+        streams = dict(result.model.reactions.streams)
+        names = [result.model.sheets[k].name for k in streams[part]] if part in streams else [part]
+        key = f"{wanted.state}_ms"
+        # one that is there throughout has no times
+        wrong = [
+            n for n in names if record["sheets"][n].get(key, 0.0 if key == "entered_ms" else None) is None
+        ]
+    if wanted.negated:
+        wrong = [name for name in names if name not in wrong]
+    of = wrong[0] if wrong and len(names) > 1 else None
+    return Outcome(wanted.text, not wrong, float(len(wrong)), "", None, of)
+
+
 def _limit(result: Result, record: Mapping[str, Any], wanted: Requirement) -> Outcome:
     assert wanted.measure is not None, "a requirement without an event has a measure"
     if wanted.sensor is not None:
         return _at_sensor(record, wanted, wanted.sensor)
-    each = wanted.measure.partition(".")[0] not in record
+    head, dot, _ = wanted.measure.partition(".")
+    each = head not in record
+    if each and dot:
+        _in_each(record, head)
     names = _concerned(result, record, wanted) if each else [None]
     if not names:
         return Outcome(wanted.text, False, None, wanted.unit, None)
@@ -241,6 +275,17 @@ def _limit(result: Result, record: Mapping[str, Any], wanted: Requirement) -> Ou
     return Outcome(
         wanted.text, margin >= 0.0, value / per, shown, margin / per, of if len(names) > 1 else None
     )
+
+
+def _in_each(record: Mapping[str, Any], head: str) -> None:
+    """Raises ValueError where the head of a dotted name is neither a table nor a measure of each sheet."""
+    tables = [key for key, value in record.items() if isinstance(value, Mapping) and value]
+    own = [_bare(key) for sheet in record["sheets"].values() for key in sheet]
+    if head not in own:
+        known = list(dict.fromkeys([*tables, *own]))
+        raise ValueError(
+            f"there is no {head!r}{did_you_mean(head, known) or ';'} there are {', '.join(known)}"
+        )
 
 
 def _at_sensor(record: Mapping[str, Any], wanted: Requirement, sensor: str) -> Outcome:
@@ -350,7 +395,7 @@ def _key(node: Mapping[str, Any], part: str, path: str) -> tuple[str, str]:
             return f"{part}{end}", unit
     known = [_bare(key) for key in node]
     raise ValueError(
-        f"there is no {part!r} in {path}{did_you_mean(part, known)}; there are {', '.join(known)}"
+        f"there is no {part!r} in {path}{did_you_mean(part, known) or ';'} there are {', '.join(known)[:200]}"
     )
 
 

@@ -16,7 +16,8 @@ from mdlgen.spec.over_time import begun
 from mdlgen.spec.passing import as_written, check_passing, check_stream, passing_sheets
 from mdlgen.spec.pile import names_of as sheets_of
 from mdlgen.spec.reacting import checks as reacting
-from mdlgen.spec.require import requirement
+from mdlgen.spec.reacting import leaves
+from mdlgen.spec.require import OF_SHEETS, requirement
 from mdlgen.spec.shaft import check_shaft
 from mdlgen.spec.strict import fail
 from mdlgen.units import exact_quantity
@@ -62,7 +63,13 @@ def _check_requirement(scene: Scene, k: int) -> None:
         wanted = requirement(scene.require[k])
     except ValueError as error:
         raise fail(str(error), path) from None
-    if wanted.part is not None:
+    if wanted.state in OF_SHEETS and wanted.part is not None:
+        known(wanted.part, (*scene.sheets, *scene.streams), "sheet or stream", path)
+        if wanted.state == "left":
+            leaves(scene, wanted.part, path)
+    elif wanted.state is not None and wanted.part is not None:
+        known(wanted.part, scene.sensors, "sensor", path)
+    elif wanted.part is not None:
         parts = [*scene.sheets, *scene.machine, *scene.sensors]
         known(wanted.part, parts, "part", path)
     if wanted.sensor is not None:

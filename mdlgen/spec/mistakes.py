@@ -226,11 +226,16 @@ def _describe(error: Any, document: Document) -> SpecError:
 
 
 def located(error: SpecError, document: Document) -> SpecError:
-    """An error of a later stage, with the path and the place that its value has in the text of the scene."""
+    """An error of a later stage, and its others, with the path and the place that the value of each has in
+    the text of the scene."""
     origins: dict[SpecPath, SpecPath] = {}
     written_out(deepcopy(document.data), origins)
-    path = _as_written(in_the_text(error.path, origins), document)
-    return SpecError(error.message, path, document.place(path))
+
+    def placed(one: SpecError) -> SpecError:
+        path = _as_written(in_the_text(one.path, origins), document)
+        return SpecError(one.message, path, document.place(path))
+
+    return placed(error).with_others(map(placed, error.others))
 
 
 def _as_written(path: SpecPath, document: Document) -> SpecPath:

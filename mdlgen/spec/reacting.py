@@ -3,14 +3,16 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator
+from fnmatch import fnmatchcase
 from functools import partial
 from typing import TYPE_CHECKING
 
-from mdlgen.conditions import CLOCK, OF_ROLLER, OF_SENSOR, OF_SHEET, TIME, check, condition
-from mdlgen.formulas import Dimension
+from mdlgen.conditions import CLOCK, OF_ROLLER, OF_SENSOR, OF_SHEET, OF_STAY, TIME, check, condition
+from mdlgen.errors import did_you_mean
+from mdlgen.formulas import NONE, Dimension
 from mdlgen.spec.between import known, matching
 from mdlgen.spec.moving import Pivot, Slide
-from mdlgen.spec.nip import names_of
+from mdlgen.spec.nip import names_of as rollers_of
 from mdlgen.spec.stream import names_of as sheets_of
 from mdlgen.spec.strict import fail
 from mdlgen.units import parse_quantity
@@ -28,18 +30,26 @@ def words(scene: Scene) -> dict[str, Dimension | None]:
         (scene.sensors, OF_SENSOR),
         ((*scene.sheets, *scene.probes), OF_SHEET),
         (scene.rollers, OF_ROLLER),
+        (scene.sheets, dict.fromkeys(OF_STAY)),
+        (scene.streams, dict.fromkeys(OF_STAY, NONE)),
     ):
         found |= {f"{name}.{word}": dimension for name in names for word, dimension in of.items()}
     return found
 
 
-def states(scene: Scene) -> tuple[str, ...]:
-    """The states that the rules name, the first one first."""
-    return tuple(
-        dict.fromkeys(
-            name for rule in scene.rules for name in (*rule.in_, *((rule.do.go,) if rule.do.go else ()))
-        )
-    )
+def beginning(scene: Scene) -> str:
+    """The state in which the machine begins: the first one of the first rule that has to do with states.
+    Where that rule only goes to one the machine is in none until then: empty."""
+    for rule in scene.rules:
+        if rule.in_ or rule.do.go:
+            return rule.in_[0] if rule.in_ else ""
+    return ""
+
+
+def of_stream(scene: Scene, name: str) -> list[str]:
+    """The sheets of a stream."""
+    stream = scene.streams[name]
+    return sheets_of(name, {"count": stream.count, "times": stream.times})
 
 
 def seen(scene: Scene, name: str) -> list[str]:
@@ -50,17 +60,27 @@ def seen(scene: Scene, name: str) -> list[str]:
     return list(dict.fromkeys(found))
 
 
+def of_nips(scene: Scene, pattern: str) -> dict[str, str]:
+    """The rollers of the nips that a name or a pattern means, each with its nip; none where a roller or a
+    plane has that name, or is meant by that pattern."""
+    if any(fnmatchcase(name, pattern) for name in (*scene.rollers, *scene.planes)):
+        return {}
+    nips = {name: nip for name, nip in scene.nips.items() if fnmatchcase(name, pattern)}
+    return {
+        roller: name
+        for name, nip in nips.items()
+        for roller in rollers_of(name, {"lower": nip.lower, "upper": nip.upper})
+    }
+
+
 def driven(scene: Scene, pattern: str, path: tuple[str | int, ...]) -> list[str]:
     """The driven rollers that a command means: by name, by pattern, or those of a nip or a shaft."""
     having = [name for name, roller in scene.rollers.items() if roller.drive is not None]
     if pattern in scene.shafts:
         shaft = scene.shafts[pattern]
         having, names = list(shaft.rollers if shaft.drive is not None else ()), list(shaft.rollers)
-    elif pattern in scene.nips:
-        nip = scene.nips[pattern]
-        names = list(names_of(pattern, {"lower": nip.lower, "upper": nip.upper}))
     else:
-        names = matching(pattern, scene.rollers, path)
+        names = list(of_nips(scene, pattern)) or matching(pattern, (*scene.rollers, *scene.nips), path)
     found = [name for name in names if name in having]
     if not found:
         others = [*having, *(name for name, shaft in scene.shafts.items() if shaft.drive is not None)]
@@ -111,7 +131,7 @@ def place(scene: Scene, name: str, to: str, path: tuple[str | int, ...]) -> floa
 def entering(scene: Scene, name: str, path: tuple[str | int, ...]) -> list[str]:
     """The sheets of a stream, or the sheet, that a command lets in, one at each time."""
     waiting = [n for n, sheet in scene.sheets.items() if sheet.by_rule]
-    names = sheets_of(name, {"count": scene.streams[name].count}) if name in scene.streams else [name]
+    names = of_stream(scene, name) if name in scene.streams else [name]
     found = [n for n in names if n in waiting]
     if not found:
         others = [n for n, stream in scene.streams.items() if stream.by_rule]
@@ -120,9 +140,17 @@ def entering(scene: Scene, name: str, path: tuple[str | int, ...]) -> list[str]:
 
 
 def pressed(scene: Scene, pattern: str, path: tuple[str | int, ...]) -> list[str]:
-    """The rollers and planes with a press that a command means."""
+    """The rollers and planes with a press that a command means; of a nip the roller that has one."""
     having = {n: p for n, p in (scene.rollers | scene.planes).items() if p.press is not None}
-    return matching(pattern, having, path)
+    nips = of_nips(scene, pattern)
+    found = [name for name in nips if name in having]
+    if nips and not found:
+        raise fail(
+            f"no roller of nip {pattern} has a press; those that have one are: "
+            f"{', '.join(having)[:200] or 'none'}",
+            path,
+        )
+    return found or [name for name in matching(pattern, (*having, *scene.nips), path) if name in having]
 
 
 def on_arms(scene: Scene, pattern: str, path: tuple[str | int, ...]) -> list[str]:
@@ -169,6 +197,18 @@ def _condition(scene: Scene, k: int, named: dict[str, Dimension | None]) -> None
         check(condition(rule.when), named, scene.amounts)
     except ValueError as error:
         raise fail(str(error), ("rules", k, "when")) from None
+    for name in condition(rule.when).expression.names:
+        thing, _, word = name.partition(".")
+        if word == "left":
+            leaves(scene, thing, ("rules", k, "when"))
+
+
+def leaves(scene: Scene, name: str, path: tuple[str | int, ...]) -> None:
+    """Raises the error where no sheet of that name, or of that stream, can leave."""
+    sheets = of_stream(scene, name) if name in scene.streams else [name]
+    if not any(scene.sheets[sheet].out for sheet in sheets):
+        key = f"streams.{name}" if name in scene.streams else f"sheets.{name}"
+        raise fail(f"{name} never leaves; give {key} out, as out: beyond x = 400 mm", path)
 
 
 def _action(scene: Scene, k: int) -> None:
@@ -183,9 +223,9 @@ def _action(scene: Scene, k: int) -> None:
                     place(scene, name, given.to, (*path, kind, pattern))
     for k, name in enumerate(rule.do.enter):
         entering(scene, name, (*path, "enter", k))
-    if rule.do.go is not None and not any(rule.do.go in other.in_ for other in scene.rules):
-        named = [name for other in scene.rules for name in other.in_]
-        known(rule.do.go, dict.fromkeys(named), "state of a rule's `in`", (*path, "go"))
+    named = dict.fromkeys(name for other in scene.rules for name in other.in_)
+    if rule.do.go is not None and rule.do.go not in named and did_you_mean(rule.do.go, named):
+        known(rule.do.go, named, "state of a rule's `in`", (*path, "go"))
 
 
 def _turns(scene: Scene, name: str, path: tuple[str | int, ...]) -> None:

@@ -1,6 +1,7 @@
 """Requirements of a scene: parses the texts of `require`.
 
 no EVENT [at PART]
+[not] SHEET entered | left, [not] STREAM entered | left, [not] SENSOR covered | clear    at the end
 MEASURE below VALUE | above VALUE | within VALUE [of VALUE] | from VALUE to VALUE    [at TIME | throughout]
 gap | speed | skew | position  at SENSOR  below VALUE | ..
 """
@@ -21,13 +22,18 @@ EVENTS = (
 )
 # of each sheet that goes by a sensor
 AT_SENSORS = ("gap", "speed", "skew", "position")
+# what a sheet, all of a stream, or a sensor is at the end
+OF_SHEETS, OF_SENSORS = ("entered", "left"), ("covered", "clear")
 FORMS = (
-    "no EVENT [at PART], MEASURE below VALUE, MEASURE above VALUE, MEASURE within VALUE [of VALUE], "
-    "MEASURE from VALUE to VALUE, with at TIME or throughout behind the last four; and gap, speed, skew or "
+    "no EVENT [at PART], SHEET entered, SHEET left, SENSOR covered, SENSOR clear, "
+    "these with not before them, MEASURE below VALUE, MEASURE above VALUE, MEASURE within "
+    "VALUE [of VALUE], MEASURE from VALUE to VALUE, with at TIME or throughout behind the last four; and "
+    "gap, speed, skew or "
     "position at SENSOR before below, above, within, from"
 )
 MOST = 200  # characters of one
 _NO = re.compile(r"no\s+(\S+)(?:\s+at\s+(\S+))?", re.ASCII)
+_STATE = re.compile(rf"(not\s+)?([A-Za-z]\w*)\s+({'|'.join((*OF_SHEETS, *OF_SENSORS))})", re.ASCII)
 _LIMIT = re.compile(
     r"([A-Za-z_][\w.]*)(?:\s+at\s+([A-Za-z]\w*))?\s+(below|above|within|from)\s+(.+?)(?:\s+(throughout)|\s+at\s+(.+?))?",
     re.ASCII,
@@ -37,12 +43,15 @@ _NONE = (0.0, 0.0, 0.0, 0.0)
 
 @dataclass(frozen=True)
 class Requirement:
-    """One requirement: an event that must not be, or a measure between two limits (inf: none there)."""
+    """One requirement: an event that must not be, a state at the end, or a measure between two limits (inf:
+    none there)."""
 
     text: str
     event: str | None = None
     part: str | None = None  # at which the event must not be, None: anywhere
     sensor: str | None = None  # at which each sheet is measured
+    state: str | None = None  # which `part` has to be in at the end, or must not be where it is `negated`
+    negated: bool = False
     measure: str | None = None  # dotted name in the summary, without its unit
     low: float = -math.inf  # in the internal units
     high: float = math.inf
@@ -65,6 +74,9 @@ def requirement(text: str) -> Requirement:
                 f"{event!r} is no event{did_you_mean(event, EVENTS)}; events are {', '.join(EVENTS)}"
             )
         return Requirement(text, event=event, part=part)
+    found = _STATE.fullmatch(text)
+    if found:
+        return Requirement(text, part=found[2], state=found[3], negated=found[1] is not None)
     found = _LIMIT.fullmatch(text)
     if not found:
         raise ValueError(f"{text[:80]!r} is not understood; the forms are {FORMS}")

@@ -78,7 +78,7 @@ class Action(Strict):
     press: dict[str, Annotated[float, quantity("N")]] = Field(
         default_factory=dict,
         description="rollers or planes with `press`, and the force of the spring where it touches: "
-        "below 0 N it lifts",
+        "below 0 N it lifts; or nips, and the force with which each roller presses the sheet",
     )
     torque: dict[str, Annotated[float, quantity("N*mm")]] = Field(
         default_factory=dict,
@@ -94,7 +94,11 @@ class Action(Strict):
         strict=False,
         description="streams, or sheets, with `by_rule`: the next sheet of each comes in",
     )
-    go: Name | None = Field(default=None, description="state that the machine goes to, see `in`")
+    go: Name | None = Field(
+        default=None,
+        description="state that the machine goes to, see `in`; in one that no `in` names, only rules "
+        "without `in` hold",
+    )
     end: bool = Field(default=False, description="true: the run ends well, at the next stored time")
 
     @model_validator(mode="after")
@@ -112,7 +116,7 @@ class Rule(Strict):
 
     when: str = Field(
         description="a condition: exit covered, count(exit) == 3, gap(entry) < 20 mm, time > 30 ms, "
-        "note.x > 120 mm, with and, or, not"
+        "note.x > 120 mm, note_3 left, left(infeed) == 20, with and, or, not"
     )
     after: TimeOrZero = Field(default=default("0 ms"), description="time from then until it acts")
     once: bool = Field(default=False, description="true: only the first time")
@@ -121,7 +125,8 @@ class Rule(Strict):
         strict=False,
         alias="in",
         description="state or states of the machine in which the rule holds; all if left out. The machine "
-        "begins in the first state that the list of rules names",
+        "begins in the first one of the first rule that has `in` or `go`; where that rule has `go` alone, it "
+        "begins in no state, and rules without `in` hold until it goes to one",
     )
     do: Action = Field(description="what it does")
 

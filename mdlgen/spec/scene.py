@@ -223,8 +223,11 @@ class Scene(Strict):
         `where`, `message` and `remedy`. Raises SpecError."""
         from mdlgen.checks import lints
         from mdlgen.model.lower import lower
+        from mdlgen.results.required import check
 
-        return lints(lower(self))
+        model = lower(self)
+        check(model)
+        return lints(model)
 
     def sweep(
         self, over: Mapping[str, Sequence[object]], measure: Sequence[str] = (), solver: str = "auto"

@@ -157,6 +157,13 @@ def test_a_cost_grows_with_boxes_pairs_and_duration() -> None:
     assert finer.seconds > 3.5 * base.seconds and finer.steps == base.steps
 
 
+def test_a_cost_has_what_is_outside_the_kernels() -> None:
+    # of sorter that is nearly all: a few boxes, and rules that are asked at each step
+    model = lower(load(samples() / "sorter.yaml"))
+    blind, whole = cost(replace(model, reactions=type(model.reactions)())), cost(model)
+    assert blind and whole and whole.seconds > 1.0 and whole.seconds > 2.0 * blind.seconds
+
+
 @pytest.mark.parametrize(
     ("seconds", "said"),
     [

@@ -17,6 +17,9 @@ WORDS = {
     "eye.gap": LENGTH,
     "time": TIME,
     "note.x": LENGTH,
+    "note.entered": None,
+    "note.left": None,
+    "infeed.left": NONE,
 }
 VALUES = {
     "eye.covered": 1.0,
@@ -26,6 +29,9 @@ VALUES = {
     "time": Amount(30.0, TIME),
     "note.x": Amount(12.0, LENGTH),
     "v": Amount(0.5, SPEED),
+    "note.entered": 1.0,
+    "note.left": 0.0,
+    "infeed.left": Amount(2.0, NONE),
 }
 
 
@@ -41,6 +47,9 @@ VALUES = {
         ("note.x - 2 mm == v*20 ms", True),
         ("gap(eye) < 20 mm", False),  # not known yet
         ("gap(eye) >= 20 mm", False),
+        ("count(eye) % 2 == 1 and 31 ms % 30 ms < time", True),
+        ("note entered and not note left", True),
+        ("left(infeed) == 2 and not left(infeed) > 2", True),
         ("10 mm/(note.x - 12 mm) > 1", False),  # a division by zero
     ],
 )
@@ -56,6 +65,13 @@ def test_a_condition_says_what_it_says(text: str, holds: bool) -> None:
         ("eie covered", "there is no 'eie'; did you mean 'eye'?"),
         ("eye.counts > 2", "eye has no 'counts'; did you mean 'count'?"),
         ("gap(eye) < 20 ms", "compares mm with s"),
+        ("count(eye) % 2 mm == 0", "a remainder needs one unit, not no unit and mm"),
+        ("left(infeed)", "is a number, not true or false"),
+        ("note lefd", "'note lefd' is not understood; did you mean 'left'? behind a name stands covered"),
+        ("eye covered note left", "between two conditions and or or"),
+        ("eye", "'eye': eye alone says nothing; write eye covered, or eye clear, or count(eye) > 0"),
+        ("time > 3 ms and not infeed", "infeed alone says nothing; write left(infeed) > 0"),
+        ("note > 3 mm", "note alone says nothing; write note.x > 5 mm, or note entered, or note left"),
         ("count(eye) > 2 mm", "compares no unit with mm"),
         ("count(eye)", "is a number, not true or false"),
         ("time > 3 ms and gap(eye)", "is a number, not true or false"),

@@ -157,3 +157,63 @@ def test_what_is_kept_goes_on_as_before() -> None:
     assert [order for _, order in before] == [order for _, order in orders]
     assert [t for t, _ in before] == pytest.approx([t for t, _ in orders], abs=1e-3)
     assert [row["kind"] for row in second.log] == [row["kind"] for row in whole.log]
+
+
+@pytest.mark.parametrize(
+    ("rules", "acted"),
+    [
+        # the first rule with a state has an in: the machine begins there
+        ([{"in": "a", "do": {"go": "b"}}, {"in": "b", "do": {"go": "c"}}], [0, 1]),
+        # it only goes to one: the machine is in none until then, so the rule of b acts after it
+        ([{"do": {"go": "b"}}, {"in": "b", "do": {"go": "c"}}], [0, 1]),
+        # without in a rule holds in each state, and where there is no rule of a state
+        ([{"in": "a", "do": {"go": "done"}}, {"do": {"end": True}}], [0, 1]),
+    ],
+)
+def test_the_first_rule_with_a_state_says_where_the_machine_begins(rules, acted) -> None:
+    model = wheel([{"when": f"time > {k + 1} ms", **rule} for k, rule in enumerate(rules)])
+    assert [row["rule"] for row in followed(model, 0.5, 5.0)[0].log if row["kind"] == "rule"] == acted
+
+
+def test_rules_act_as_sheets_come_in_and_leave() -> None:
+    stream = {"of": "note", "times": ["0 ms", "10 ms"], "out": "beyond x = 400 mm"}
+    go = {"speed": {"w": "1 rad/s"}}
+    rules = [
+        {"when": "infeed_2 entered", "do": go},
+        {"when": "left(infeed) == 1 and entered(infeed) == 2", "do": go},
+        {"when": "infeed_2 left", "do": {"end": True}},
+    ]
+    model = wheel(rules, streams={"infeed": stream})
+    machine = Machine(model, SPEED)
+
+    def turned(t: float, there: list[bool]) -> list[int]:
+        machine.there = np.array(there)
+        ahead = machine.ahead(t, 0.5, poses(model, t))
+        assert ahead == pytest.approx(t + 5e-4), "it looks at once"
+        return [row["rule"] for row in machine.log]
+
+    machine.there = np.array([True, False])
+    machine.look(0.0, 0.5, poses(model, 0.0))
+    for t, there in ((10.0, [True, True]), (20.0, [False, True]), (30.0, [False, False])):
+        turned(t, there)
+        machine.look(t + 5e-4, 0.5, poses(model, t))
+        machine.restore(json.loads(json.dumps(machine.kept())))
+        assert machine.ahead(t + 5e-4, 0.5, poses(model, t)) > t + 0.4
+    assert [row["rule"] for row in machine.log if row["kind"] == "rule"] == [0, 1, 2] and machine.ended
+
+
+def test_times_ahead_are_looked_at_once(monkeypatch: pytest.MonkeyPatch) -> None:
+    rules = [{"when": "time > 50 ms or note.vx < 0 m/s and eye covered", "do": {"end": True}}]
+    rules += [{"when": "time > 52 ms", "do": {"speed": {"w": "1 rad/s"}}}]
+    asked: list[int] = []
+    own = Machine._changed
+
+    def counted(machine: Machine, which, t, at) -> bool:
+        asked.append(len(which))
+        return own(machine, which, t, at)
+
+    monkeypatch.setattr(Machine, "_changed", counted)
+    _, orders, looked = followed(wheel(rules), 0.5, 60.0)
+    assert [t for t, order in orders if order.kind == "speed"] == pytest.approx([52.0], abs=1e-3)
+    # the first rule is asked at each step; the second one 64 steps ahead at once, and once more after an edge
+    assert len(asked) < 3 * len(looked) + 400

@@ -6,6 +6,7 @@ import json
 import math
 from pathlib import Path
 
+import numpy as np
 import pytest
 import ran
 from typer.testing import CliRunner
@@ -14,9 +15,10 @@ import mdlgen
 from mdlgen.cli import app
 from mdlgen.errors import SpecError
 from mdlgen.model.lower import lower
+from mdlgen.results.begun import begun_of
 from mdlgen.results.result import Result
 from mdlgen.results.summary import summary
-from mdlgen.results.verdict import in_words, outcomes_of
+from mdlgen.results.verdict import in_words, judged, outcomes_of
 from mdlgen.spec.load import loads
 from mdlgen.spec.require import requirement
 
@@ -135,6 +137,32 @@ def test_what_cannot_be_judged_is_one_line_before_anything_runs(text: str, says:
     with pytest.raises(SpecError, match=says) as caught:
         mdlgen.solve(lower(loads(SLIDE, "slide", (f"require={json.dumps([text])}",))), "lattice")
     assert "\n" not in str(caught.value) and "require" in str(caught.value)
+
+
+def test_what_has_come_in_or_left_is_required() -> None:
+    texts = ("infeed left", "not infeed_1 left", "infeed_1 left", "not infeed_3 entered", "not eye covered")
+    sensors = {"eye": {"beam": [["0 mm", "0 mm", "-5 mm"], ["0 mm", "0 mm", "5 mm"]]}}
+    scene = mdlgen.load("samples/stream.yaml").with_({"require": texts, "sensors": sensors})
+    run = begun_of(lower(scene))
+    run.stays = np.array([[0.0, 107.0], [60.0, np.nan], [np.nan, np.nan]])
+    record = summary(run, without=("estimates", "verdict"))
+    found = [judged(run, record, k) for k in range(len(texts))]
+    assert [outcome.passed for outcome in found] == [False, False, True, True, True]
+    assert str(found[0]) == "FAIL  infeed left: infeed_2 and 1 more"
+    assert str(found[1]) == "FAIL  not infeed_1 left" and str(found[2]) == "pass  infeed_1 left"
+
+
+def test_check_names_each_that_there_is_not_with_its_place(tmp_path: Path) -> None:
+    scene = tmp_path / "slide.yaml"
+    wrong = "[sheets.c.yaw within 1 deg, no jam,\n  planes.tt.nip_force below 1 N, shets.b.yaw below 1 deg]\n"
+    scene.write_text(f"{SLIDE}require: {wrong}")
+    done = CliRunner().invoke(app, ["check", str(scene)])
+    assert done.exit_code == 2
+    assert "slide.yaml:10:11: require.0: 'sheets.c.yaw within 1 deg': there is no 'c'" in done.output
+    assert "slide.yaml:11:3: require.2:" in done.output and "did you mean 't'?" in done.output
+    assert "there is no 'shets'; did you mean 'sheets'?" in done.output
+    with pytest.raises(SpecError, match="there is no 'c'"):
+        loads(scene.read_text(), "slide").check()
 
 
 def test_values_have_units_percentages_and_plain_numbers() -> None:

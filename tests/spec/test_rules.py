@@ -41,6 +41,20 @@ def test_a_command_means_a_name_a_pattern_or_a_nip() -> None:
     assert ordered("nip_1_left") == ["motor_1_left"]
 
 
+def test_a_nip_is_pressed_as_its_force_says() -> None:
+    # what the rule orders is the preload that the nip would have with that force
+    def order(name: str, force: str) -> dict[str, float]:
+        model = mdlgen.lower(scene(rules=[rule(do={"press": {name: force}})]))
+        return {order.name: order.value for order in model.reactions.rules[0].orders}
+
+    for force in ("3 N", "5 N", "0.2 N"):
+        other = mdlgen.lower(scene(**{"nips.nip_*_*.force": force})).rollers
+        exact = {r.name: r.press.preload for r in other if r.press is not None}
+        assert order("nip_1_left", force) == pytest.approx({"counter_1_left": exact["counter_1_left"]})
+        assert order("nip_*_left", force).keys() == {"counter_1_left", "counter_2_left"}
+    assert order("counter_1_left", "5 N") == {"counter_1_left": 5.0}
+
+
 def test_a_surface_goes_in_the_sense_of_its_own_drive() -> None:
     command = {"speed": {"motor_1_left": {"surface_speed": "750 mm/s", "ramp": "2 ms"}}}
     order = mdlgen.lower(scene(rules=[rule(do=command)])).reactions.rules[0].orders[0]
@@ -81,7 +95,18 @@ def test_a_surface_goes_in_the_sense_of_its_own_drive() -> None:
             "give exactly one of speed and surface_speed",
         ),
         ({"rules": [rule(do={"press": {"motor_1_left": "1 N"}})]}, "there is no part 'motor_1_left'"),
-        ({"rules": [rule(do={"go": "there"})]}, "rules.0.do.go: there is no state of a rule's `in` 'there'"),
+        (
+            {"rules": [rule(do={"go": "wait"}), rule(**{"in": "waits"})]},
+            "rules.0.do.go: there is no state of a rule's `in` 'wait'; did you mean 'waits'?",
+        ),
+        (
+            {"rules": [rule(do={"press": {"nip_1_lef": "1 N"}})]},
+            "there is no part 'nip_1_lef'; did you mean 'nip_1_left'?",
+        ),
+        ({"rules": [rule(when="note left")]}, "rules.0.when: note never leaves; give sheets.note out"),
+        ({"require": ["note left"]}, "require.0: note never leaves"),
+        ({"require": ["eie covered"]}, "require.0: there is no sensor 'eie'; did you mean 'eye'?"),
+        ({"require": ["infed left"]}, "require.0: there is no sheet or stream 'infed'; there are: note"),
         ({"rules": [rule()], "run.analysis": "static"}, "rules: rules act over time"),
         ({"rules": [rule()] * 201}, "rules: 201 rules; allowed are 200"),
         ({"require": ["gap at ear below 3 mm"]}, "require.0: there is no sensor 'ear'; there are: eye"),
@@ -115,6 +140,8 @@ def test_texts_refuse_rules_and_name_sensors(output: str) -> None:
         ({"rules": [rule(when="not eye covered")]}, set()),
         ({"rules": [rule(**{"in": "a"}), rule(**{"in": "b"})]}, {"W165"}),
         ({"rules": [rule(**{"in": "a", "do": {"go": "b"}}), rule(**{"in": "b"})]}, set()),
+        ({"rules": [rule(**{"in": "a", "do": {"go": "done"}})]}, {"W189"}),
+        ({"rules": [rule(**{"in": "a", "do": {"go": "done"}}), rule()]}, set()),
         (
             {
                 "rules": [
@@ -128,4 +155,4 @@ def test_texts_refuse_rules_and_name_sensors(output: str) -> None:
 )
 def test_lints(changes: dict[str, Any], codes: set[str]) -> None:
     found = {lint.code for lint in lints(mdlgen.lower(scene(**changes)))}
-    assert found & {"W165", "W166", "W167"} == codes
+    assert found & {"W165", "W166", "W167", "W189"} == codes

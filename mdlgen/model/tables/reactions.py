@@ -50,7 +50,8 @@ class Reactions(Frozen):
     sensors: tuple[SensorPart, ...] = ()
     rules: tuple[RulePart, ...] = ()
     amounts: tuple[tuple[str, float, tuple[float, float, float, float]], ...] = ()  # parameters, dimensions
-    begins: str = ""  # the state in which the machine begins; empty: it has none
+    begins: str = ""  # the state in which the machine begins; empty: in none
+    streams: tuple[tuple[str, tuple[int, ...]], ...] = ()  # each with the numbers of its sheets
 
     def __bool__(self) -> bool:
         return bool(self.sensors or self.rules)
