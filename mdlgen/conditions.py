@@ -1,9 +1,9 @@
 """Conditions of rules: comparisons over what sensors see, times, places and parameters, with units checked.
 
 `exit covered and count(exit) < 3`, `gap(entry) < 20 mm`, `time > 30 ms`, `note.x > 120 mm`. A word asks for
-the reading of a sensor: `covered(exit)` or `exit covered`, `count(exit)`, `gap(exit)`. It also asks if a sheet
-has come in or left, `note_3 left`, or how many sheets of a stream have, `left(infeed)`. Values are in the
-internal units (mm, g, ms, rad).
+the reading of a sensor: `covered(exit)` or `exit covered`, `count(exit)`, `gap(exit)`. It also asks if a
+sheet has come in or left, `note_3 left`, or how many sheets of a stream have, `left(infeed)`. Values are in
+the internal units (mm, g, ms, rad).
 """
 
 from __future__ import annotations

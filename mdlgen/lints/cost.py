@@ -1,8 +1,8 @@
 """Predicts the cost of a run before it starts, and lints of the inputs that make it expensive.
 
 The cost counts boxes, pairs of bodies by kind, cells of air, steps, stored states, sensors and rules. It is
-fitted to the samples and to some of them on other grids and at other tolerances. It holds for one core of some
-3 GHz and the solver lattice with all its runs, those at coarser steps for the error estimate included.
+fitted to the samples and to some of them on other grids and at other tolerances. It holds for one core of
+some 3 GHz and the solver lattice with all its runs, coarser ones for the error estimate included.
 
 The processor time of 19 transient samples was 0.54 to 2.0 times the prediction. On other grids and at other
 tolerances it was 0.2 to 5 times. The reason: the step is halved until the estimate is within the tolerance,

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -23,11 +24,17 @@ class Units(NamedTuple):
     time: float = 1.0
 
 
+def _same(body: int) -> int:
+    return body
+
+
 class Commands:
     """The values that a Model's drives and springs were ordered to so far, by body."""
 
     def __init__(self, model: Model, units: Units):
         self._units = units
+        # the row of a body among records, where some of the Model's bodies have none
+        self.number: Callable[[int], int] = _same
         self._parts = {part.name: part for part in model.machine}
         self._ordered: dict[int, dict[str, Any]] = {}  # fields of the records of bodies
         self._preload: dict[int, float] = {}  # [N]
@@ -36,14 +43,15 @@ class Commands:
         """Carries an order out at the time t [ms], in the record of its body. Returns by how much the force,
         or the torque, of a spring grew in its place at the start, in the solver's units."""
         part: Any = self._parts[order.name]
-        row: Any = bodies[part.body]
+        at = self.number(part.body)
+        row: Any = bodies[at]
         ordered, grown = self._ordered.setdefault(part.body, {}), 0.0
         if order.kind == "speed":
             ordered["corners"], ordered["drive"] = self._speed(row, order, t)
         elif order.kind == "move":
             along = 1.0 if part.moving.turns else self._units.length
             time = self._units.time
-            command(bodies, part.body, t * time, order.value * along, order.ramp * time)
+            command(bodies, at, t * time, order.value * along, order.ramp * time)
             if t > 0.0:  # Exudyn counts places from that at the time 0, where a part is given
                 write(row, np.array([np.zeros(WIDE), *row["drive"][: 2 * WIDE].reshape(2, WIDE)]))
             ordered["corners"], ordered["drive"] = int(row["corners"]), row["drive"].copy()
@@ -64,7 +72,7 @@ class Commands:
         """Writes all that was ordered into other records of the same bodies."""
         for body, ordered in self._ordered.items():
             for name, value in ordered.items():
-                bodies[name][body] = value
+                bodies[name][self.number(body)] = value
 
     def body(self, name: str) -> int:
         """The body of a part."""

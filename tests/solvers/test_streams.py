@@ -14,7 +14,9 @@ from same import bits
 
 import mdlgen
 from mdlgen.backends.lattice import run as lattice
+from mdlgen.backends.lattice.integrate.limit import Calls
 from mdlgen.backends.lattice.integrate.passes import UNSEEN, _Pass, division
+from mdlgen.backends.lattice.integrate.there import There
 from mdlgen.errors import RefusedError
 from mdlgen.model.tables import Model
 from mdlgen.report import boxes
@@ -149,6 +151,45 @@ def test_a_rule_lets_sheets_in() -> None:
     assert result.stays[1].tolist() == pytest.approx([7.03, 7.03 + falls(10.5)], abs=2e-4)
     assert np.isnan(result.stays[0]).all()
     assert np.array_equal(result.position[-1, 0], made.bodies.position[0])
+
+
+def test_steps_have_the_bodies_that_are_there(monkeypatch: pytest.MonkeyPatch) -> None:
+    """And a result is the same with all of them, and with calls of compiled code of any length."""
+    made = model(
+        DRAWN, "streams.infeed.count=2", "run.duration=70 ms", "run.step=0.5 ms", "run.tolerance=0.1"
+    )
+    going = _Pass(made, lattice.build(made), division(made, 0.1), UNSEEN, math.inf)
+    assert len(going.passing._sleep.work.state.x) == 24 + 2 + 1  # a note, rollers, the ground
+    result = lattice.solve(made)
+    monkeypatch.setattr(Calls, "took", lambda self, many, seconds: setattr(self, "many", 3))
+    monkeypatch.setattr(There, "of", classmethod(lambda cls, gone: cls()))
+    again = lattice.solve(made)
+    for name in ("position", "rotation", "velocity", "spin", "contact_force", "stays"):
+        assert np.array_equal(getattr(result, name), getattr(again, name), equal_nan=True), name
+    assert result.energy == again.energy
+
+
+def test_loads_over_time_are_those_of_sheets_that_are_there() -> None:
+    """A block that comes in at 20 ms is pushed by t/30 ms of 1 mN up to 30 ms, then by all of it; the load of
+    another one ends as that leaves."""
+    text = (
+        THROWN.split("streams:")[0]
+        + """\
+  late: {material: paper, size: [20 mm, 20 mm], thickness: 1 mm, mass: 1 g, boxes: [1, 1],
+    center: [0 mm, 60 mm, 0 mm], enters: 20 ms}
+gravity: [0 m/s^2, 0 m/s^2, 0 m/s^2]
+loads:
+- {sheet: late, edge: x_min, force: [1 mN, 0 N, 0 N], profile: [[0 ms, 0], [30 ms, 1]]}
+- {sheet: block, edge: x_min, force: [1 mN, 0 N, 0 N], profile: [[0 ms, 1], [30 ms, 1]]}
+run: {duration: 60 ms, step: 0.1 ms}
+"""
+    )
+    result = mdlgen.solve(model(text, "sheets.block.out=beyond x = 3 mm"), "lattice")
+    speed = 1e-3 * (30.0**2 - 20.0**2) / 60.0  # N/g is mm/ms^2
+    way = 1e-3 * ((30.0**3 - 20.0**3) / 180.0 - 20.0**2 / 60.0 * 10.0) + speed * 30.0 + 0.5e-3 * 30.0**2
+    late = next(sheet for sheet in result.model.sheets if sheet.name == "late")
+    # the rule is exact where a force is linear over a step
+    assert result.position[-1, late.first, 0] == pytest.approx(way, abs=1e-6)
 
 
 def test_halved_streams(monkeypatch: pytest.MonkeyPatch) -> None:

@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 from mdlgen.backends.lattice.arrays import System, offsets
 from mdlgen.backends.lattice.search import with_room
 from mdlgen.mechanics.corner import renumbered
+from mdlgen.mechanics.over_time import GRAVITY, Changing
 from mdlgen.model.tables import Ints, Model
 
 
@@ -27,6 +28,7 @@ class Parts:
         self.moves = np.zeros(len(table), bool)
         pairs = system.pairs[: system.search.first]
         self.moves[pairs["row"]] = _moves(model, system)[pairs["b"]]
+        self.air = bool((table.air_viscosity > 0.0).any())
         count = len(system.bodies)
         self.sheet_of = np.full(count, -1)  # sheet of each body
         for k, sheet in enumerate(model.sheets):
@@ -56,6 +58,15 @@ def _held(held: np.ndarray, pairs: np.ndarray, chosen: Ints) -> np.ndarray:
     pairs["held"] = 0
     pairs["held"][found["pair"]] = 1 + np.arange(len(found))
     return found
+
+
+def _changing(changes: Changing, loads: NDArray[np.bool_]) -> Changing:
+    """What changes of those of the loads alone that are left, by the rows that these have then."""
+    left = np.append(loads, True)  # the last one is gravity, -1
+    rows = np.append(np.cumsum(loads) - 1, GRAVITY)
+    acts = changes.acts[left[changes.acts["load"]]]
+    acts["load"] = rows[acts["load"]]
+    return changes._replace(acts=acts)
 
 
 def _moves(model: Model, system: System) -> NDArray[np.bool_]:
@@ -95,13 +106,15 @@ def awake(
         for end in "ab":
             met[region[end] : region[end] + region["many_" + end]] = True
     sleeps = np.append(asleep, False)[parts.sheet_of]  # the last one is for bodies without a sheet
+    acts = ~sleeps[system.loads["body"]]
     return (
         system._replace(
             bodies=bodies,
             joints=joints,
             pairs=pairs,
             held=held,
-            loads=system.loads[~sleeps[system.loads["body"]]],
+            loads=system.loads[acts],
+            changes=_changing(system.changes, acts),
             nodes=nodes,
             sheets=system.sheets[left],
             offsets=offsets(bodies, joints, corners),

@@ -2,10 +2,13 @@
 
 from __future__ import annotations
 
+from typing import NamedTuple
+
 import numpy as np
 from numpy.typing import NDArray
 
 from mdlgen.backends.lattice.arrays import System, partner
+from mdlgen.backends.lattice.integrate.there import There
 from mdlgen.backends.lattice.integrate.work import flexible
 from mdlgen.backends.lattice.kernels import tuning
 from mdlgen.backends.lattice.kernels.state import (
@@ -26,43 +29,57 @@ from mdlgen.results.result import Result
 PASSED, OVERLAPPED, LIMITED, CRAWLED, RUNAWAY, TAKEN = -1, -2, -3, -4, -5, -6
 
 
+class Ended(NamedTuple):
+    """What steps had as a run ended."""
+
+    system: System
+    bodies: There  # that it has
+    state: State
+    whole: tuple[Floats, Floats]  # x and r of all bodies
+    counters: Floats
+
+
 def reason_of(
     model: Model,
-    system: System,
+    ended: Ended,
     status: int,
     t: float,
     dt: float,
-    state: State,
-    counters: Floats,
     there: NDArray[np.bool_] | None = None,
 ) -> str:
     """Reason why a run ended early; `there` (sheets,): sheets that were present, None: all."""
     from mdlgen.backends.lattice.kernels.integrate import integrate
 
-    names = model.bodies.name
+    system, state, counters = ended.system, ended.state, ended.counters
+
+    def called(number: float) -> str:
+        return model.bodies.name[ended.bodies.body(int(number))]
+
     if status == LIMITED:
         return limited(model, t)
     if status == CRAWLED:
         return (
             f"{int(counters[STEPS])} steps were needed up to {t:.6g} ms, more than the whole run takes at "
-            f"the finest step of a search; the velocity of box {names[int(counters[WORST])]} converges "
+            f"the finest step of a search; the velocity of box {called(counters[WORST])} converges "
             "slowly; larger smoothing of its contacts may help"
         )
     if status == integrate.STOPPED and counters[THROUGH] >= 0:
-        one, two = (names[int(system.pairs[end][int(counters[THROUGH])])] for end in "ab")
+        one, two = (called(system.pairs[end][int(counters[THROUGH])]) for end in "ab")
         return (
             f"box {one} would pass through box {two} of another sheet at {t:.6g} ms, with steps down to "
             f"{dt / 2**tuning.HALVINGS_MOST:.3g} ms; a stiffer contact between the two would hold it"
         )
     if status == integrate.STOPPED:
-        body = names[int(counters[WORST])]
+        body = called(counters[WORST])
         return (
             f"no convergence at {t:.6g} ms with steps down to {dt / 2**tuning.HALVINGS_MOST:.3g} ms; "
             f"box {body} moved most; larger smoothing of its contacts may help"
         )
     if status == integrate.DEEP:
         pair = int(counters[WORST])
-        box, plate = int(system.pairs["a"][pair]), partner(model, system.pairs[pair])
+        record = system.pairs[pair].copy()
+        record["a"], record["b"] = (ended.bodies.body(int(record[end])) for end in "ab")
+        box, plate = int(record["a"]), partner(model, record)
         rates = [
             state.u[np.flatnonzero(system.nodes == int(system.pairs[end][pair])), :3].sum(0) for end in "ab"
         ]
@@ -70,10 +87,10 @@ def reason_of(
         deep = model.too_deep(box, plate, before_an_end(system.pairs[pair]))
         return f"{deep} at {t:.6g} ms; {model.held_by(box, way)}"
     if status == OVERLAPPED:
-        return unheld(model, system).found(state.x, state.r, t, there) or "two parts overlap"
+        return unheld(model, system).found(*ended.whole, t, there) or "two parts overlap"
     if status == PASSED:
         return (
-            f"box {names[int(counters[WORST])]} has passed the plane of the scene's symmetry at "
+            f"box {called(counters[WORST])} has passed the plane of the scene's symmetry at "
             f"{t:.6g} ms, where it may meet what is on the other side; run.symmetry: false solves both sides"
         )
     if status == integrate.CROWDED:
@@ -82,8 +99,8 @@ def reason_of(
     if status == integrate.STRETCHED:
         row = int(system.joints["row"][int(counters[WORST])])
         return overstretched(model, row, float(counters[STRAIN]), t)
-    body = int(counters[WORST])
-    at = ", ".join(f"{value:.4g}" for value in state.x[body])
+    body = int(ended.bodies.body(int(counters[WORST])))
+    at = ", ".join(f"{value:.4g}" for value in ended.whole[0][body])
     bounds, advice = model.bounds_of(body)
     return f"{model.called(body)} left {bounds} at {t:.6g} ms (it is at {at} mm); {advice}"
 

@@ -22,6 +22,7 @@ from mdlgen.backends.lattice.integrate.ends import (
     PASSED,
     RUNAWAY,
     TAKEN,
+    Ended,
     reason_of,
     unbalanced,
     unheld,
@@ -34,8 +35,9 @@ from mdlgen.backends.lattice.integrate.reacting import Reacting
 from mdlgen.backends.lattice.integrate.record import Recorder, Snapshot
 from mdlgen.backends.lattice.integrate.sleep import Sleep
 from mdlgen.backends.lattice.integrate.slow import Slow
+from mdlgen.backends.lattice.integrate.there import Whole
 from mdlgen.backends.lattice.integrate.widen import begins_again
-from mdlgen.backends.lattice.integrate.work import arrays, beginning, control, flexible
+from mdlgen.backends.lattice.integrate.work import arrays, beginning, begun_places, control, flexible
 from mdlgen.backends.lattice.kernels import entries
 from mdlgen.backends.lattice.kernels.integrate import integrate
 from mdlgen.backends.lattice.kernels.state import (
@@ -180,13 +182,14 @@ class _Pass:
         self._begun = clock.perf_counter()
         self._most = times * divided.outputs * divided.each  # bound on the number of steps
         self._looks = Looks(model.run.duration, divided.outputs, divided.each)
-        there = beginning(model, system)
-        work = arrays(model, system, there[0])
+        begun = beginning(model, system)
+        work = arrays(model, system, begun)
         steering = control(work)
         self._counters, self._energies, self._pace = steering.counters, steering.energies, steering.pace
-        self._recorder = Recorder(model, system, work, divided.outputs)
+        whole = Whole(begun.there, *begun_places(model))
+        self._recorder = Recorder(model, system, work, whole, divided.outputs)
         self._overlaps = unheld(model, system)
-        self._sleep = Sleep(model, system, work, steering, self._recorder, watch.sleeps, there)
+        self._sleep = Sleep(model, system, work, steering, self._recorder, watch.sleeps, begun)
         self.passing = Passing(model, self._sleep, self._recorder, divided.step, self._overlaps)
         self._recorder.store(0.0)
         # the guess is more accurate at finer steps, so the limit of the iterations must fall as fast
@@ -341,7 +344,8 @@ class _Pass:
         dt, sleep, reason = self._divided.step, self._sleep, None
         if status != integrate.DONE:
             state = sleep.work.state
-            at = sleep.system, status, self._t, dt, state, self._counters, self.passing.there
+            ended = Ended(sleep.system, sleep.there, state, sleep.whole.places(state), self._counters)
+            at = ended, status, self._t, dt, self.passing.there
             if status == RUNAWAY and self._reacting is not None:
                 reason = self._reacting.runaway
             elif status == TAKEN:
@@ -372,12 +376,12 @@ class _Pass:
 def _seen(sleep: Sleep, system: System, overlaps: Unheld, t: float, there: NDArray[np.bool_] | None) -> int:
     """integrate.DONE, or the status of a pass that cannot continue from its state at the time t; `there`
     (sheets,): sheets that are present, None: all."""
-    state, mirror = sleep.work.state, sleep.system.mirror
-    passed = mirror.passed(state.x, system.nodes) if mirror is not None else -1
+    mirror, (x, r) = sleep.system.mirror, sleep.whole.places(sleep.work.state)
+    passed = mirror.passed(x, system.nodes) if mirror is not None else -1
     if passed >= 0:
-        sleep.steering.counters[WORST] = passed
+        sleep.steering.counters[WORST] = sleep.there.number(passed)
         return PASSED
-    return integrate.DONE if overlaps.found(state.x, state.r, t, there) is None else OVERLAPPED
+    return integrate.DONE if overlaps.found(x, r, t, there) is None else OVERLAPPED
 
 
 def _part(recorder: Recorder, snapshot: Snapshot, dt: float, steps: int) -> Result:

@@ -68,8 +68,9 @@ class Passing:
         if not due < ends[-1] - self._slack:
             return steps, True
         whole = int(np.searchsorted(ends, due + self._slack, side="right"))
-        rest = due - (ends[whole - 1] if whole else 0.0)
-        return (np.append(steps[:whole], rest), False) if rest > self._slack else (steps[:whole], True)
+        # the part of a step follows in a call of its own, from the time that the steps before end at: so its
+        # round-off is the same however many steps a call takes, which depends on the clock
+        return (steps[:whole], True) if whole else (np.array([due]), False)
 
     def _comes(self) -> float:
         """Time at which the next sheet comes in [ms]."""
@@ -95,8 +96,8 @@ class Passing:
 
     def _far(self, k: int) -> Floats:
         """model.passing.far for a sheet by its number."""
-        state = self._sleep.work.state
-        return far(self._model, self._model.sheets[k], state.x, state.r, self._overlaps.solved)
+        x, r = self._sleep.whole.places(self._sleep.work.state)
+        return far(self._model, self._model.sheets[k], x, r, self._overlaps.solved)
 
     def turn(self, t: float) -> bool:
         """Lets sheets leave and come in whose time is t; False: one cannot, see `taken`."""
@@ -127,5 +128,5 @@ class Passing:
 
     def taken(self, t: float) -> str | None:
         """Reason why a sheet cannot come in at t: another one is in its place; None: it can."""
-        state = self._sleep.work.state
-        return self._overlaps.taken(self._coming(t), ~self._sleep.gone, state.x, state.r, t)
+        x, r = self._sleep.whole.places(self._sleep.work.state)
+        return self._overlaps.taken(self._coming(t), ~self._sleep.gone, x, r, t)

@@ -25,11 +25,12 @@ class Reacting:
         """`slowest`: see Machine."""
         self.machine = Machine(model, slowest)
         self._sleep, self._passing, self._commands = sleep, passing, Commands(model, Units())
-        self._boxes = np.zeros(len(sleep.work.tables.bodies), bool)
+        self._boxes = np.zeros(1 + len(model.bodies.name), bool)
         for sheet in model.sheets:
             self._boxes[sheet.first : sheet.first + sheet.count] = True
         self.runaway = ""  # reason why a pass ended
         sleep.ordered = self._commands.write
+        self._commands.number = self._number
         self._ordered: np.ndarray | None = None  # the records that have all orders
 
     def steps(self, t: float, left: Floats, step: float) -> Floats:
@@ -59,7 +60,7 @@ class Reacting:
             bodies = self._sleep.work.tables.bodies
             grown = self._commands.order(order, t, bodies)
             if grown:
-                self._book(self._commands.body(order.name), grown)
+                self._book(self._number(self._commands.body(order.name)), grown)
         return DONE
 
     def _book(self, body: int, grown: float) -> None:
@@ -71,6 +72,9 @@ class Reacting:
         energies[DRIVEN] += gained
         energies[THROUGH_DRIVES] += abs(gained)
 
+    def _number(self, body: int) -> int:
+        return self._sleep.there.number(body)
+
     def _write(self) -> None:
         """Writes all orders into new records of bodies, after sheets slept or woke, or the margin widened."""
         bodies = self._sleep.work.tables.bodies
@@ -80,12 +84,12 @@ class Reacting:
 
     def _poses(self) -> Poses:
         """Poses of all bodies, with the velocities in the middle of the last step."""
-        work = self._sleep.work
-        state, motion, nodes = work.state, work.mid.motion, self._sleep.system.nodes
-        u, w = motion.u.copy(), motion.w.copy()
-        u[self._boxes] = w[self._boxes] = 0.0  # those that are awake follow
-        u[nodes], w[nodes] = state.u[:, :3], state.u[:, 3:]
-        return Poses(state.x, state.r, u, w)
+        work, sleep = self._sleep.work, self._sleep
+        x, r, rates, spins = sleep.whole.motion(work.state, work.mid.motion)
+        u, w, nodes = rates.copy(), spins.copy(), sleep.there.whole(sleep.system.nodes)
+        u[self._boxes] = w[self._boxes] = 0.0  # but for what is awake
+        u[nodes], w[nodes] = work.state.u[:, :3], work.state.u[:, 3:]
+        return Poses(x, r, u, w)
 
     # -- checkpoints
 

@@ -10,6 +10,7 @@ from mdlgen.backends.lattice.arrays import System
 from mdlgen.backends.lattice.hinges import plastic_rows
 from mdlgen.backends.lattice.integrate.islands import groups
 from mdlgen.backends.lattice.integrate.states import WIDTHS, States
+from mdlgen.backends.lattice.integrate.there import Whole
 from mdlgen.backends.lattice.kernels.entries import PROGRAM
 from mdlgen.backends.lattice.kernels.state import (
     ACTS,
@@ -35,7 +36,6 @@ from mdlgen.backends.lattice.kernels.state import (
     Kept,
     Workspace,
 )
-from mdlgen.mechanics.frame import Motion
 from mdlgen.mechanics.turning import ABOUT_A, ABOUT_B, ALONG, LIMIT, TURNING
 from mdlgen.model.tables import Model
 from mdlgen.results import audit
@@ -64,7 +64,10 @@ class Snapshot(NamedTuple):
 class Recorder:
     """Stores states of a run; `kept`: the sums of the compiled code."""
 
-    def __init__(self, model: Model, system: System, work: Workspace, outputs: int = 0):
+    def __init__(self, model: Model, system: System, work: Workspace, whole: Whole, outputs: int = 0):
+        """`whole`: where all bodies are, with those that are not in `work`."""
+        self.whole = whole
+        self._parts = {p.name: int(work.islands.part[whole.there.number(p.body)]) for p in model.machine}
         self.model, self.system, self.kept, self.work = model, system, work.kept, work
         self._asleep = np.zeros((groups(work), 3))
         self._states = States(model, system.mirror, outputs + 1)
@@ -103,8 +106,8 @@ class Recorder:
         self._energies[1] = energies
         self._most = np.maximum(self._most, energies[:, KINETIC] + energies[:, ELASTIC])
         self._times.append(t)
-        state, motion = self.work.state, self.work.mid.motion
-        self._states.add(Motion(state.x, state.r, motion.u, motion.w))
+        state = self.work.state
+        self._states.add(self.whole.motion(state, self.work.mid.motion))
         if t == 0.0:
             self.kept.rows[:, NOW] = rows[:, NOW]
             # a contact at the start may have opened in the middle of the first step
@@ -201,7 +204,7 @@ class Recorder:
         inside = np.where(rows[:, TIME] > 0, rows[:, TIME], 1.0)
         forces = np.array(self._forces[: snapshot.times])
         forces = forces if mirror is None else mirror.acts(forces)
-        energy = _balance(snapshot, self.work)
+        energy = _balance(snapshot, self.work, self._parts)
         plastic = None
         if len(snapshot.model.plastic):
             rotations = self._rotations(snapshot.times)
@@ -235,8 +238,9 @@ class Recorder:
         )
 
 
-def _balance(snapshot: Snapshot, work: Workspace) -> Energy:
-    """Energies of the whole scene, with the balance of the group that has the largest error."""
+def _balance(snapshot: Snapshot, work: Workspace, parts: dict[str, int]) -> Energy:
+    """Energies of the whole scene, with the balance of the group that has the largest error; `parts`: group
+    of each machine part by name."""
     model, (first, last, most) = snapshot.model, snapshot.energies
     lost, driven, through, numerical = snapshot.work.sum(axis=0).tolist()
     kinetic, elastic, _ = last.sum(axis=0).tolist()
@@ -246,7 +250,7 @@ def _balance(snapshot: Snapshot, work: Workspace) -> Energy:
         own, moved = snapshot.work[group], float(last[group, POTENTIAL] - first[group, POTENTIAL])
         passed = came[group] - left[group]
         moved -= float(passed[POTENTIAL])
-        names = _names(model, work, group)
+        names = _names(model, work, parts, group)
         size = audit.scale(
             model, float(own[DISSIPATED]), float(own[THROUGH_DRIVES]), float(most[group]), moved, names
         )
@@ -261,11 +265,11 @@ def _balance(snapshot: Snapshot, work: Workspace) -> Energy:
     return energy
 
 
-def _names(model: Model, work: Workspace, group: int) -> tuple[str, ...]:
+def _names(model: Model, work: Workspace, parts: dict[str, int], group: int) -> tuple[str, ...]:
     """The parts of a group."""
-    part, found = work.islands.part, work.islands.group
+    found = work.islands.group
     named = {sheet.name: k for k, sheet in enumerate(model.sheets)}
-    named |= {p.name: int(part[p.body]) for p in model.machine if part[p.body] >= 0}
+    named |= {name: part for name, part in parts.items() if part >= 0}
     return tuple(name for name, k in named.items() if work.islands.answers[k] and found[k] == group)
 
 

@@ -32,11 +32,12 @@ from numpy.typing import NDArray
 
 from mdlgen.backends.lattice.arrays import System
 from mdlgen.backends.lattice.bristles import moved
-from mdlgen.backends.lattice.integrate.awake import Parts, awake
+from mdlgen.backends.lattice.integrate.awake import Parts
 from mdlgen.backends.lattice.integrate.islands import groups
 from mdlgen.backends.lattice.integrate.record import Recorder
+from mdlgen.backends.lattice.integrate.there import There, parts_of
 from mdlgen.backends.lattice.integrate.widen import besides, carried_over, marks_of, places, system_of
-from mdlgen.backends.lattice.integrate.work import starts, workspace
+from mdlgen.backends.lattice.integrate.work import Begun, starts, workspace
 from mdlgen.backends.lattice.kernels.state import (
     ACTS,
     DEPTH_NOW,
@@ -55,7 +56,7 @@ from mdlgen.mechanics.frame import Motion
 from mdlgen.mechanics.stick import STRETCH
 from mdlgen.mechanics.turning import TURNING
 from mdlgen.model.passing import at_start, passing
-from mdlgen.model.tables import Ints, Model
+from mdlgen.model.tables import Model
 from mdlgen.model.wider import wider, with_margin
 from mdlgen.runs.checkpoint import Checkpointer, State
 
@@ -81,16 +82,18 @@ class Sleep:
         steering: Control,
         recorder: Recorder,
         sleeps: bool,
-        there: tuple[System, Ints] | None = None,
+        begun: Begun | None = None,
     ):
-        """`sleeps`: sheets may sleep; `there`: the part of the System that is present at the beginning, and
-        the numbers of its pairs, without searched ones; None: all of it."""
+        """`sleeps`: sheets may sleep; `begun`: the part of the System that is present at the beginning; None:
+        all of it."""
         from mdlgen.backends.lattice.kernels.integrate import momentum
 
         # writes the orders of rules into new records of bodies
         self.ordered: Callable[[np.ndarray], None] = lambda bodies: None
         self.work, self.steering = work, steering
-        self.system, self._chosen = there or (system, np.arange(system.search.first))
+        begun = begun or Begun(system, np.arange(system.search.first), There())
+        self.system, self._chosen, self.there = begun
+        self.whole = recorder.whole
         self._model, self._whole, self._recorder = model, system, recorder
         self._passes = passing(model)
         sheets, bodies = len(work.asleep.speeds), len(system.bodies)
@@ -114,7 +117,10 @@ class Sleep:
         if self.system is not system:
             self.gone[:] = ~np.array(at_start(model))
             self._keep_starts()
-        self._stuck = np.zeros(0, STRETCH)
+        self._stuck = np.zeros(0, STRETCH)  # with the numbers that boxes have in the whole
+        self._part = np.full(bodies, -1)  # of the islands
+        self._part[system.nodes] = system.sheets
+        self._part[self.there.whole(np.arange(len(self.system.bodies)))] = work.islands.part
 
     @property
     def asleep(self) -> NDArray[np.bool_]:
@@ -147,7 +153,7 @@ class Sleep:
 
     def wake(self, body: int, t: float) -> None:
         """Wakes the sheet of a box, and all sleeping sheets of its island."""
-        disturbed = self._parts.sheet_of[body]
+        disturbed = self._parts.sheet_of[self.there.body(body)]
         self._wait[disturbed] *= 2.0
         islands = self._islands(self.work.kept.rows[:, ACTS] != 0.0)
         woken = (islands == islands[disturbed]) & self._sheets
@@ -157,7 +163,8 @@ class Sleep:
     def widen(self) -> bool:
         """Chooses pairs with a wider margin, where a body has left its bounds; returns True if that helps.
         Raises UnhalvedError."""
-        model = wider(self._model, self.work.state.x[: len(self._model.bodies.name)])
+        x, _ = self.whole.places(self.work.state)
+        model = wider(self._model, x[: len(self._model.bodies.name)])
         if model is not None:
             self._widen(model)
         return model is not None
@@ -165,20 +172,19 @@ class Sleep:
     def _widen(self, model: Model) -> None:
         """Continues with the pairs of a Model that has those of this one and more."""
         whole = system_of(model, self._whole)
-        at, motion = places(self._whole, whole), self.work.mid.motion
+        at = places(self._whole, whole)
         self._beside[self._chosen] = self.system.pairs["beside"][: len(self._chosen)]
-        state = self.work.state
-        self._beside = besides(whole, self._beside, at, Motion(state.x, state.r, motion.u, motion.w))
+        self._beside = besides(whole, self._beside, at, self._motion())
         marks = marks_of(self.work.kept.marks, self._model, model)
         whole = whole._replace(bristles=moved(self._whole.bristles, whole.bristles))
         whole = whole._replace(yields=self._whole.yields)
         self._model, self._whole, self._parts = model, whole, Parts(model, whole)
         self.system, self._chosen = whole, np.arange(whole.search.first)
         if self._sheets.any() or self.gone.any():
-            self.system, self._chosen = awake(whole, self._parts, self._sheets, self.gone)
+            self.system, self._chosen, _ = parts_of(whole, self._parts, self._sheets, self.gone)
         self.ordered(self.system.bodies)
         self.system.pairs["beside"][: len(self._chosen)] = self._beside[self._chosen]
-        self.work = carried_over(model, self.work, self.system, marks)
+        self.work = carried_over(model, self.work, self.system, self.there, marks)
         self._recorder.widen(model, whole, self.work.kept)
         self._recorder.follow(self.work, self._energies)
 
@@ -199,32 +205,38 @@ class Sleep:
         from mdlgen.backends.lattice.kernels import forces
         from mdlgen.backends.lattice.kernels.integrate import room
 
-        old, nodes = self.work, self.system.nodes
+        old, before = self.work, self.there
+        nodes = before.whole(self.system.nodes)
         history = self.steering.history
         moves = (old.state.v, old.state.l, old.state.u, history.u, history.earlier)
         for name, array in zip(WIDTHS, moves, strict=True):
             self._store[name][nodes] = array
         self._beside[self._chosen] = self.system.pairs["beside"][: len(self._chosen)]
-        stuck = old.mid.sticks.pairs
-        self._stuck = np.concatenate([self._stuck, stuck[stuck["count"] > 0]])
+        stuck = old.mid.sticks.pairs[old.mid.sticks.pairs["count"] > 0]
+        stuck["a"], stuck["b"] = before.whole(stuck["a"]), before.whole(stuck["b"])
+        self._stuck = np.concatenate([self._stuck, stuck])
         energies = self._ledger(t) + self._energies
 
         self._sheets = sheets
-        self.system, self._chosen = awake(self._whole, self._parts, sheets, self.gone)
+        self.system, self._chosen, self.there = parts_of(self._whole, self._parts, sheets, self.gone)
+        x, r = self.whole.turn(self.there, old.state)
         self.ordered(self.system.bodies)
         self.system.pairs["beside"][: len(self._chosen)] = self._beside[self._chosen]
         state, mid, matrix = room.empty(self.system, forces.WIDE)
-        v, l, u, last, earlier = (self._store[name][self.system.nodes] for name in WIDTHS)
-        state = old.state._replace(v=v, l=l, u=u)
+        nodes = self.there.whole(self.system.nodes)
+        v, l, u, last, earlier = (self._store[name][nodes] for name in WIDTHS)
+        state = old.state._replace(x=x, r=r, v=v, l=l, u=u)
         mid.motion.x[:], mid.motion.r[:] = state.x, state.r
         bodies = self._whole.nodes[sheets[self._whole.sheets]]
         # nothing awake touches sheets that fall asleep; those that slept before keep their missed impulses
         missed = np.zeros((len(self._whole.bodies), 6))
-        missed[old.asleep.bodies] = old.asleep.missed
+        missed[before.whole(old.asleep.bodies)] = old.asleep.missed
         rows = self._parts.lasting(sheets)
-        asleep = old.asleep._replace(bodies=bodies, missed=missed[bodies], rows=rows)
-        step = state, mid, matrix
-        self.work = workspace(self._model, self.system, step, old.kept, old.islands, asleep)
+        own = self.there.own(bodies)
+        asleep = old.asleep._replace(bodies=own, missed=missed[bodies], rows=rows)
+        step, islands = (state, mid, matrix), old.islands._replace(part=self.there.rows(self._part))
+        parts = self.system, self.there
+        self.work = workspace(self._model, parts, step, old.kept, islands, asleep)
         self._put_back()
         self.steering = self.steering._replace(history=history._replace(u=last, earlier=earlier))
         self.steering.factored[:] = 0.0
@@ -262,15 +274,18 @@ class Sleep:
         for name, array in zip(WIDTHS, starts(self._model, self._whole.nodes), strict=True):
             self._store[name][self._whole.nodes] = array
 
+    def _motion(self) -> Motion:
+        """Of all bodies."""
+        return self.whole.motion(self.work.state, self.work.mid.motion)
+
     def _meet(self, rows: NDArray[np.bool_]) -> None:
         """Notes on which side of parts the boxes of contacts `rows` (contacts,) are as they come in."""
         from mdlgen.backends.lattice.kernels import entries
 
         some = np.flatnonzero(rows[self._whole.pairs["row"][: self._whole.search.first]])
-        pairs, state, motion = self._whole.pairs[some], self.work.state, self.work.mid.motion
+        pairs, motion = self._whole.pairs[some], self._motion()
         pairs["beside"] = 0
-        shown = Motion(state.x, state.r, motion.u, motion.w)
-        entries.remember(self._whole.bodies, pairs, self._whole.tables.shapes, shown)
+        entries.remember(self._whole.bodies, pairs, self._whole.tables.shapes, motion)
         self._beside[some] = pairs["beside"]
 
     def _ledger(self, t: float) -> np.ndarray:
@@ -287,13 +302,16 @@ class Sleep:
         pairs = self.system.pairs[first:]
         count, many = len(self._whole.bodies), many_searched(self.system.search)
         known = self._stuck["a"] * count + self._stuck["b"]
-        keys = pairs["a"][:many] * count + pairs["b"][:many]
+        one, two = (self.there.whole(pairs[end][:many]) for end in "ab")
+        keys = one * count + two
         order = np.argsort(known)
         at = np.minimum(np.searchsorted(known[order], keys), max(0, len(known) - 1))
         if not len(known) or not len(places):
             return
         found = known[order][at] == keys
-        places[np.flatnonzero(found)] = self._stuck[order[at[found]]]
+        some = self._stuck[order[at[found]]]
+        some["a"], some["b"] = self.there.own(some["a"]), self.there.own(some["b"])
+        places[np.flatnonzero(found)] = some
         self._stuck = np.delete(self._stuck, order[at[found]])
 
     # -- checkpoints
@@ -306,7 +324,7 @@ class Sleep:
         return {
             MARGIN: margin,
             SHEETS: self._sheets,
-            **({GONE: self.gone} if self._passes else {}),
+            **({GONE: self.gone, **self.whole.carried(self.work.state)} if self._passes else {}),
             "sleep.since": self._since,
             "sleep.counted": self._counted,
             "sleep.wait": self._wait,

@@ -15,6 +15,7 @@ import numpy as np
 
 from mdlgen.backends.lattice.arrays import System, build
 from mdlgen.backends.lattice.integrate.films import films
+from mdlgen.backends.lattice.integrate.there import There
 from mdlgen.backends.lattice.integrate.work import bounds_of
 from mdlgen.backends.lattice.kernels.state import MANY, Kept, Workspace
 from mdlgen.backends.lattice.symmetry.find import find
@@ -109,7 +110,7 @@ def besides(whole: System, beside: np.ndarray, at: Ints, motion: Motion) -> np.n
     return pairs["beside"].copy()
 
 
-def carried_over(model: Model, work: Workspace, system: System, marks: np.ndarray) -> Workspace:
+def carried_over(model: Model, work: Workspace, system: System, there: There, marks: np.ndarray) -> Workspace:
     """The workspace with the pairs of this System; all other arrays are carried over."""
     from mdlgen.backends.lattice.kernels import entries, forces
     from mdlgen.backends.lattice.kernels.integrate import room
@@ -131,7 +132,7 @@ def carried_over(model: Model, work: Workspace, system: System, marks: np.ndarra
         mid=work.mid._replace(**{name: getattr(blank, name) for name in OF_PAIRS}),
         condensed=condensed,
         kept=Kept(work.kept.rows, marks),
-        bounds=bounds_of(model),
+        bounds=bounds_of(model, there),
         search=system.search,
         frozen=room.frozen(system, len(film.cells)),
         film=film,

@@ -2,15 +2,18 @@
 
 from __future__ import annotations
 
+from typing import NamedTuple
+
 import numpy as np
 
 from mdlgen.backends.lattice.arrays import System
 from mdlgen.backends.lattice.bristles import begin
 from mdlgen.backends.lattice.hinges import begin as begin_hinges
-from mdlgen.backends.lattice.integrate.awake import Parts, awake
+from mdlgen.backends.lattice.integrate.awake import Parts
 from mdlgen.backends.lattice.integrate.films import films
 from mdlgen.backends.lattice.integrate.islands import groups, islands
 from mdlgen.backends.lattice.integrate.record import Recorder
+from mdlgen.backends.lattice.integrate.there import There, Whole, parts_of
 from mdlgen.backends.lattice.kernels.state import (
     COUNTERS,
     GUESSES,
@@ -32,32 +35,50 @@ from mdlgen.model.starts import begun_rates
 from mdlgen.model.tables import Floats, Ints, Model
 
 
-def start(model: Model, system: System) -> tuple[State, Midpoint, Matrix]:
+class Begun(NamedTuple):
+    """The part of a System that is there as a run begins, which of its pairs before those that are searched
+    that has, and which bodies."""
+
+    system: System
+    chosen: Ints
+    there: There
+
+
+def start(model: Model, begun: Begun) -> tuple[State, Midpoint, Matrix]:
     """State at the start, and the arrays of a step."""
     from mdlgen.backends.lattice.kernels import forces
     from mdlgen.backends.lattice.kernels.integrate import room
 
+    system, there = begun.system, begun.there
     state, mid, matrix = room.empty(system, forces.WIDE)
-    bodies = model.bodies
-    count = len(bodies.name)
-    state.x[:count], state.r[:count] = bodies.position, bodies.rotation.reshape(-1, 9)
-    state.r[count] = np.eye(3).ravel()
+    x, r = begun_places(model)
+    state.x[:], state.r[:] = there.rows(x), there.rows(r)
     mid.motion.x[:], mid.motion.r[:] = state.x, state.r
-    state.v[:], state.l[:], state.u[:], _, _ = starts(model, system.nodes)
+    state.v[:], state.l[:], state.u[:], _, _ = starts(model, there.whole(system.nodes))
     for roller in model.rollers:
         if roller.begins_turning:  # with its shaft
-            at = system.bodies["spin"][roller.body]
+            at = system.bodies["spin"][there.number(roller.body)]
             if at < 0:
                 continue  # left out, see mirror
             state.vb[at] = state.ub[at] = roller.prescribed(0.0)
         if roller.motor and roller.axle is not None:
-            at = system.bodies["spin"][roller.body]
+            at = system.bodies["spin"][there.number(roller.body)]
             state.s[at] = roller.axle.begins_behind(float(roller.prescribed(0.0)))
-    for begun in begun_rates(model):
-        at = system.bodies[begun.of][begun.body]
+    for rate in begun_rates(model):
+        at = system.bodies[rate.of][there.number(rate.body)]
         if at >= 0:  # else it is left out
-            state.vb[at] = state.ub[at] = begun.rate
+            state.vb[at] = state.ub[at] = rate.rate
     return state, mid, matrix
+
+
+def begun_places(model: Model) -> tuple[Floats, Floats]:
+    """Where bodies are as a run begins, the ground being the last one: x (bodies + 1, 3) [mm] and r
+    (bodies + 1, 9)."""
+    bodies = model.bodies
+    return (
+        np.append(bodies.position, np.zeros((1, 3)), axis=0),
+        np.append(bodies.rotation.reshape(-1, 9), np.eye(3).reshape(1, 9), axis=0),
+    )
 
 
 def starts(model: Model, nodes: Ints) -> tuple[Floats, ...]:
@@ -71,22 +92,22 @@ def starts(model: Model, nodes: Ints) -> tuple[Floats, ...]:
     return v, momentum, u, u, u
 
 
-def beginning(model: Model, system: System) -> tuple[System, Ints]:
-    """The part of a System that is present as a run begins, and the numbers of its pairs, without searched
-    ones: all of it where no sheet comes in later."""
+def beginning(model: Model, system: System) -> Begun:
+    """The part of a System that is present as a run begins: all of it where no sheet comes in later."""
     there = np.array(at_start(model))
     if there.all():
-        return system, np.arange(system.search.first)
-    return awake(system, Parts(model, system), np.zeros_like(there), ~there)
+        return Begun(system, np.arange(system.search.first), There())
+    return Begun(*parts_of(system, Parts(model, system), np.zeros_like(there), ~there))
 
 
-def arrays(model: Model, whole: System, there: System | None = None) -> Workspace:
-    """Workspace of a run at its start. `there`: the part of the System that is present then, None: all of
+def arrays(model: Model, whole: System, begun: Begun | None = None) -> Workspace:
+    """Workspace of a run at its start. `begun`: the part of the System that is present then, None: all of
     it."""
     from mdlgen.backends.lattice.kernels import entries
 
-    system = whole if there is None else there
-    state, mid, matrix = start(model, system)
+    begun = begun or Begun(whole, np.arange(whole.search.first), There())
+    system, there = begun.system, begun.there
+    state, mid, matrix = start(model, begun)
     system.pairs["beside"][: system.search.first] = 0
     begin(system.bristles)
     begin_hinges(system.yields.hinges)
@@ -101,7 +122,9 @@ def arrays(model: Model, whole: System, there: System | None = None) -> Workspac
         may=np.zeros(1),
         rows=np.zeros(contacts, bool),
     )
-    work = workspace(model, system, (state, mid, matrix), kept, islands(model, whole), asleep)
+    found = islands(model, whole)
+    found = found._replace(part=there.rows(found.part))
+    work = workspace(model, (system, there), (state, mid, matrix), kept, found, asleep)
     motion = Motion(state.x, state.r, mid.motion.u, mid.motion.w)
     entries.remember(system.bodies, system.pairs, system.tables.shapes, motion)
     return work
@@ -109,18 +132,19 @@ def arrays(model: Model, whole: System, there: System | None = None) -> Workspac
 
 def workspace(
     model: Model,
-    system: System,
+    parts: tuple[System, There],
     step: tuple[State, Midpoint, Matrix],
     kept: Kept,
     islands: Islands,
     asleep: Asleep,
 ) -> Workspace:
-    """Workspace of a run from a state, for which the pairs of boxes of two sheets are searched."""
+    """Workspace of a run from a state, for which the pairs of boxes of two sheets are searched. `parts`: the
+    part of a System that steps have, and the bodies of that part."""
     from mdlgen.backends.lattice.kernels import entries, forces
     from mdlgen.backends.lattice.kernels.contact import condensed
     from mdlgen.backends.lattice.kernels.integrate import damped, momentum, room
 
-    state, mid, matrix = step
+    (system, there), (state, mid, matrix) = parts, step
     entries.look(system.pairs, system.search, state.x)
     film = films(model, system)
     return Workspace(
@@ -131,7 +155,7 @@ def workspace(
         condensed=condensed.empty(system, forces.WIDE),
         free=momentum.empty(system),
         kept=kept,
-        bounds=bounds_of(model),
+        bounds=bounds_of(model, there),
         search=system.search,
         damped=damped.empty(system),
         frozen=room.frozen(system, len(film.cells)),
@@ -141,9 +165,9 @@ def workspace(
     )
 
 
-def bounds_of(model: Model) -> Bounds:
-    """Bounds on the places of the bodies of a Model, in their own arrays (see limit.Cut)."""
-    return Bounds(_own(model.pairs.low), _own(model.pairs.high))
+def bounds_of(model: Model, there: There) -> Bounds:
+    """Bounds on the places of the present bodies of a Model, in arrays of their own (see limit.Cut)."""
+    return Bounds(_own(there.rows(model.pairs.low)), _own(there.rows(model.pairs.high)))
 
 
 def _own(array: Floats) -> Floats:
@@ -167,9 +191,10 @@ def warm(model: Model, system: System) -> None:
     from mdlgen.backends.lattice.kernels import entries
     from mdlgen.backends.lattice.kernels.integrate import integrate
 
-    work = arrays(model, system, beginning(model, system)[0])
+    begun = beginning(model, system)
+    work = arrays(model, system, begun)
     integrate.run(work, 0.0, np.zeros(0), 1.0, control(work))
-    Recorder(model, system, work).store(0.0)
+    Recorder(model, system, work, Whole(begun.there, *begun_places(model))).store(0.0)
     entries.PROGRAM.release()  # frees the arrays of its last calls
 
 

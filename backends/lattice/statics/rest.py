@@ -10,6 +10,8 @@ import numpy as np
 from mdlgen.backends.lattice.arrays import System, partner
 from mdlgen.backends.lattice.integrate.islands import groups
 from mdlgen.backends.lattice.integrate.record import Recorder
+from mdlgen.backends.lattice.integrate.there import There, Whole
+from mdlgen.backends.lattice.integrate.work import begun_places
 from mdlgen.backends.lattice.kernels import tuning
 from mdlgen.backends.lattice.kernels.state import (
     ACTS,
@@ -108,7 +110,7 @@ def rest(model: Model, system: System, work: Workspace) -> Result:
     if reason is None and (ways := falls(1.0)) > 0:
         reason = standing.reason(ways, standing.begins(stable))
     wall = clock.perf_counter() - begun
-    recorder = Recorder(model, system, work)
+    recorder = Recorder(model, system, work, Whole(There(), *begun_places(model)))
     recorder.store(0.0)
     result = recorder.result("lattice", reason, np.zeros((groups(work), 4)))
     result.wall_s, result.steps = wall, 0
