@@ -37,7 +37,7 @@ SCENE = {
         "smaller smoothing takes longer to run."
     ),
     "W107": (
-        "The smoothing speed is so small beside the surface speed that the solver needs many Newton "
+        "The smoothing speed is so small compared with the surface speed that the solver needs many Newton "
         "iterations for each change of sign of friction. Raise it, unless a slower creep than that matters."
     ),
     "W108": (
@@ -85,7 +85,7 @@ SCENE = {
     "W118": (
         "A pressed roller faces another one near by, and the list of contacts does not name the two. Where "
         "no sheet is between them nothing holds the spring, and the roller moves into the other one. Add a "
-        "contact of the two rollers beside those with the sheet."
+        "contact of the two rollers in addition to those with the sheet."
     ),
     "W119": (
         "A roller and a plane, a guide or a mesh are in each other's way, and no contact holds them apart. "
@@ -103,7 +103,7 @@ SCENE = {
         "At the start a sheet is nearer to a roller, a plane or a guide than three quarters of its "
         "thickness, or in it, and no contact names the two. A run ends, with both names, where the middle of "
         "a sheet comes 0.05 mm into such a part. A sheet that is in a part from the start is taken to pass "
-        "through a hole, and its run goes on. Meshes are not looked at."
+        "through a hole, and its run continues. Meshes are not looked at."
     ),
     "W122": (
         "A pressed roller begins in balance with the sheet that it touches. That sheet, and those below it, "
@@ -290,7 +290,7 @@ SCENE = {
     ),
     "W174": (
         "`positions` names places, so that a profile and rules can name them. One that neither of them names "
-        "has no effect, but for the room that is left for the motion."
+        "has no effect, except on the space that is reserved for the motion."
     ),
     "W175": (
         "The profile of a part continues after the end of the run, so the part does not come to where its "

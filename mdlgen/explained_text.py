@@ -25,7 +25,7 @@ TEXT = {
         "rotational stiffness, which often is a slip in the order 3 k, 3 c, 3 kt, 3 ct."
     ),
     "comment": (
-        "A comment stands inside *BeginMDL, where no file of MotionView has one. Before *BeginMDL it is safe."
+        "A comment is inside *BeginMDL, where no file of MotionView has one. Before *BeginMDL it is safe."
     ),
     "condition": (
         "The condition of an *If has no value, since something in it is not known; its branch is left out."

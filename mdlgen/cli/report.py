@@ -34,7 +34,7 @@ def report(
         typer.Option(
             "--stills",
             metavar="TIMES",
-            help="Pictures for print at these times, as 0,18,30,50ms, beside the page: still_18ms.png ...",
+            help="Pictures for print at these times, as 0,18,30,50ms, next to the page: still_18ms.png ...",
         ),
     ] = None,
     pictures: Pictures = False,

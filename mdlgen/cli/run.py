@@ -69,7 +69,7 @@ def run(
             "--checkpoint",
             metavar="SECONDS",
             min=0.0,
-            help="Seconds between the states that --resume goes on from; 60 if left out.",
+            help="Seconds between the states from which --resume continues; 60 if left out.",
         ),
     ] = None,
     keep_partial: Annotated[
@@ -161,7 +161,7 @@ def run(
         if keep_partial:
             _save_part(checkpointer, folder)
         if checkpointer.written:
-            say(f"mdlgen run --resume {folder} goes on with this run")
+            say(f"mdlgen run --resume {folder} continues this run")
         raise
     if not len(result.time):  # a static run that found no rest
         if checkpointer.written:

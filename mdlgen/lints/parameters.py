@@ -34,5 +34,5 @@ def parameters(model: Model) -> Iterator[Lint]:
                 "W128",
                 where,
                 f"MotionView text has this as a number: there it does not follow {', '.join(names(formula))}",
-                "write the text anew after a change of them",
+                "write the text again after a change of them",
             )

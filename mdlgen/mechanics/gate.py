@@ -36,7 +36,7 @@ STOPS = [("stops", "f8", 5)]
 # comes out 1 % too high, greater ones less.
 BLUNT = 0.05
 
-assert WIDE * MOST_PLACES <= 2 * MOST_CORNERS, "the corners of a gate fill the room of a drive's"
+assert WIDE * MOST_PLACES <= 2 * MOST_CORNERS, "the corners of a gate fit in the array of a drive's"
 
 
 class Course(NamedTuple):

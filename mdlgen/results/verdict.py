@@ -370,7 +370,7 @@ def _of_summary(record: Mapping[str, Any], path: str) -> tuple[float | None, str
             node = node["xyz".index(part)]
             continue
         if not isinstance(node, Mapping):
-            raise ValueError(f"{path} goes on behind a number")
+            raise ValueError(f"{path} continues after a number")
         key, unit = _key(node, part, path)
         node = node[key]
     if isinstance(node, Mapping):

@@ -115,7 +115,7 @@ def _contacts(model: Model, scene: SceneView) -> list[str]:
     if len(pairs) < pairs.possible:
         lines += [
             "  Pairs are kept for the sheets where they start : to move or turn one beyond the margin,",
-            "  write the text anew, or write it with prune: false in the run, which keeps every pair.",
+            "  write the text again, or write it with prune: false in the run, which keeps every pair.",
             *margin_note(model),
         ]
     for kind, parts in (("rollers", scene.rollers), ("plates", scene.planes)):

@@ -164,7 +164,7 @@ def support_views(model: Model) -> list[SupportView]:
     """Held material points; the bushings of one share a point and a data set."""
     table = model.bushings
     rows = iter(np.flatnonzero(table.kind == SUPPORT).tolist())
-    factor = Value("factor", "Stiffness in times k_z of the sheet", number(SUPPORT_FACTOR), "EDIT")
+    factor = Value("factor", "Stiffness relative to k_z of the sheet", number(SUPPORT_FACTOR), "EDIT")
     views = []
     for support in model.supports:
         parts = list(islice(rows, len(support.body)))

@@ -116,9 +116,9 @@ def zones_rows(scene: Scene, name: str) -> list[Parameter]:
         if zone.thickness is not None:
             rows.append(Parameter(group, "s", "Thickness s", zone.thickness, "mm", (*path, "thickness")))
         for member, label in (
-            ("density", "Density in times that of the rest"),
-            ("stiffness", "Moduli in times those of the rest"),
-            ("friction", "Friction in times that of the rest"),
+            ("density", "Density relative to the rest"),
+            ("stiffness", "Moduli relative to the rest"),
+            ("friction", "Friction relative to the rest"),
         ):
             rows.append(Parameter(group, member, label, getattr(zone, member), "1", (*path, member)))
     return rows

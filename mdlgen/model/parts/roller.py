@@ -335,8 +335,8 @@ def _rim_rows(scene: Scene, name: str) -> list[Parameter]:
             ("from", "Angle where sector %d begins (deg)", sector.from_, "rad"),
             ("to", "Angle where sector %d ends (deg)", sector.to, "rad"),
             ("radius", "Radius of sector %d", sector.radius, "mm"),
-            ("friction", "Friction of sector %d in times that of the contact", sector.friction, "1"),
-            ("stiffness", "Stiffness of sector %d in times that of the contact", sector.stiffness, "1"),
+            ("friction", "Friction of sector %d relative to the contact", sector.friction, "1"),
+            ("stiffness", "Stiffness of sector %d relative to the contact", sector.stiffness, "1"),
             ("restitution", "Restitution c_R of sector %d", sector.restitution, "1"),
         ):
             if value is not None:
