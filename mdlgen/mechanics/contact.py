@@ -1,5 +1,5 @@
-"""Contact between a box and a cylinder or a part of one, and two parallel cylinders; see nip.py for what a
-face has of a round, plate.py for a box and a plate, facing.py for two boxes."""
+"""Contact between a box and a cylinder or a part of one, and two parallel cylinders. See nip.py for the
+pressure of a round on a face, plate.py for a box and a plate, facing.py for two boxes."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ def box_cylinder(out, a, box, b, roller, law):
 def box_sector(out, a, box, b, roller, sector, law):
     """As box_cylinder for a Sector of the round.
 
-    Boxes share k by what of the sector each covers, so that a box over it has k z^1.5.
+    Boxes share k by the part of the sector that each covers, so that a box over all of it has k z^1.5.
     """
     half, exposed = box
     gap = sub(b.x, a.x)

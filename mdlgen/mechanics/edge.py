@@ -13,14 +13,14 @@ normal to that of the face at the depth h, cos a = 1 - h/r,
     w = u - r (1 - sin a)        how far the side is in, along the plate; r is 0 between the rounds
     E = 2/5 k w^2.5              so the force has the direction of the round's normal at that height,
 
-whatever the penetration. Pushed along the plate, a corner so climbs where tan a < 1/mu, which is a depth of
-r (1 - cos(90 deg - atan mu)), and stands below it. Where w is more than h/(1 - h/r), a corner on the round is
-over its top and is pushed up. Of the two corners of a side at one place along it the deeper one counts
+at any penetration. So a corner that is pushed along the plate climbs where tan a < 1/mu, which is a depth of
+r (1 - cos(90 deg - atan mu)), and is stopped below it. Where w is more than h/(1 - h/r), a corner on the
+round is over its top and is pushed up. A side has two corners at one place along it; the deeper one counts
 (Holder's mean of power NORM).
 
-A corner 0.05 mm in and 0.05 mm below a face may have come from above or from the end; that depends on the way
-it took. So a pair remembers which outer sides of its box stand before which end (`beside`), from when they
-were clear of the plate: three bits for each side, 0 or 1 + the number of the end.
+A corner 0.05 mm in and 0.05 mm below a face may have come from above or from the end; that depends on its
+path. So a pair stores the ends before which outer sides of its box stand, since they were last clear of the
+plate: three bits of its field for each side, 0 or 1 + the number of the end.
 """
 
 from __future__ import annotations
@@ -63,7 +63,7 @@ class End(NamedTuple):
 
 @njit(cache=True, error_model="numpy", forceinline=True)
 def leaning(sine):
-    """How much of the law of the edge acts at a slope of the box, 0 to 1."""
+    """Part of the law of the edge that acts at a slope of the box, 0 to 1."""
     s = min(max((sine - LEVEL) / (LEANING - LEVEL), 0.0), 1.0)
     return s * s * (3.0 - 2.0 * s)
 
@@ -77,9 +77,9 @@ def leaning_growth(sine):
 
 @njit(cache=True, error_model="numpy", forceinline=True)
 def hands_over(a, exposed, inside, way):
-    """Within how many radii of the end of a plate the corners of a face begin to hand over to its edge. The
-    middle of box a is so far `inside` of the end, `way` looks out of it. An outer side ahead has 1: the edge
-    takes it by how far it is on the round (`_passes`). Else it is 2: on the round the edge has it alone.
+    """Distance from the end of a plate, in radii, at which the law begins to pass from the corners of a face
+    to its edge. `inside`: distance of the middle of box a inside of the end; `way` points out of it. An outer
+    side ahead has 1: its edge law grows with its place on the round (`_passes`). Other sides have 2.
     """
     if inside <= 0.0:
         return 2.0
@@ -361,7 +361,7 @@ def deepest_at(thick, half, beside):
 
 @njit(cache=True, error_model="numpy")
 def stands(a, box, b, plate):
-    """Which outer sides of box a stand before which end of plate b, with what was known (see the module)."""
+    """Ends of plate b before which outer sides of box a stand, given the stored ones (see the module)."""
     half, exposed = box
     ends, edge, beside = plate.ends, plate.edge, plate.beside
     thick = 2.0 * plate.half[2]
