@@ -4,8 +4,8 @@ Boxes of two sheets that lie on each other move across their faces as the contac
 they slide. The corners of the overlap (mechanics.facing), and the area of each, depend on the latter alone,
 and cost ten times as much as the force. So they are cached with the pair, in the axes of the face that owns
 the contact. The depth of a corner, its place and its normal are those of the present boxes. The overlap is
-recomputed where a corner of the other face may have moved along the owner, since it was computed, by more
-than the part MOVED of the least half length of both.
+recomputed after a corner of the other face may have moved along the owner by more than MOVED times the least
+half length of both.
 
 Faces whose outlines are apart have no overlap, nor have boxes that are apart when they are checked.
 `facing.box_box` evaluates all other cases each time: a side of a box owns the contact, since it overlaps by

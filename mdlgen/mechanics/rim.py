@@ -1,8 +1,8 @@
 """Contact with rollers whose rim is in sectors, each with its own radius, friction, stiffness, restitution.
 
-With phi the angle of the rim that looks at a flat face, the elastic energy is that of a roller of radius
-h(phi) and stiffness k(phi), where h is the support function (see model.rims). So the force acts where a real
-rim touches: at the distance h'(phi) from the point below the axis, which is the edge of a sector where that
+Let phi be the angle of the rim that looks at a flat face, and h the support function (see model.rims). The
+elastic energy is that of a roller of radius h(phi) and stiffness k(phi). So the force acts where a real rim
+touches: at the distance h'(phi) from the point below the axis, which is the edge of a sector where that
 touches. A stiffness that grows with phi causes a torque on the roller. The sectors return all stored energy.
 
 A body record has `rims`, the number of pieces of its rim (0: it is round); `rim`, the row of the first one in

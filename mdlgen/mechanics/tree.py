@@ -202,8 +202,8 @@ def depth_at(bounds, links, triangles, first, end, at, most):
 
 @njit(cache=True, error_model="numpy")
 def next_at(bounds, links, triangles, first, end, at, most, normal):
-    """Distance of a point from the nearest triangle that meets one with `normal` in an outward edge of 60 to
-    120 deg, and the number of that; -1: none is nearer than `most`."""
+    """Distance of a point from the nearest triangle across an outward edge of 60 to 120 deg, and its number;
+    -1: none is nearer than `most`. `normal`: that of the triangle on the other side of the edge."""
     near2, best, n = most * most, -1, first
     while n < end:
         box, gap2 = bounds[n], 0.0
