@@ -52,8 +52,8 @@ class Coordinates(NamedTuple):
 
 
 class Work(NamedTuple):
-    """Arrays to work in: the motion of all bodies, what a pair does, generalised forces; what a corner does,
-    and to which bodies."""
+    """Work arrays: the motion of all bodies, the result of a pair, generalised forces; the forces of a
+    corner, and their bodies."""
 
     motion: Motion
     out: Floats  # (OUT,)

@@ -123,8 +123,9 @@ def face_corner(corner, a, half, facing, b):
 
 @njit(cache=True, error_model="numpy", **BORROWS, **CALLED)
 def cylinder_cylinder(out, a, one, b, two, law):
-    """Two parallel Cylinders; k is shared by the part of the narrower one's width that they meet on. The
-    force stands in the middle of the overlap, or aside where a cover lets one run ahead (model.covers)."""
+    """Two parallel Cylinders; k is multiplied by the part of the narrower one's width on which they touch.
+    The force acts in the middle of the overlap, or is displaced from it by a cover that changes the speed of
+    a roller (model.covers)."""
     gap = sub(a.x, b.x)
     offset = dot(gap, two.axis)
     across = sub(gap, scale(offset, two.axis))

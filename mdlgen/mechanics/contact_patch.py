@@ -143,7 +143,7 @@ def lie_of(seen, face, half, shared, u):
     reach = math.sqrt(of * of - off * off)
     left = -reach if open_first else max(first, -reach)
     right = reach if open_last else min(last, reach)
-    # what lies beyond a free edge draws in to the contact line as the edge comes to it
+    # pressure beyond a free edge is drawn in to the contact line as the edge approaches it
     draw = 1.0
     if spread and open_first:
         draw = min(draw, -first / reach)

@@ -134,7 +134,7 @@ def end_of(i, b, plate):
 
 @njit(cache=True, error_model="numpy", forceinline=True)
 def rounded(u, h, thick, edge):
-    """Depth of a point that stands against an end, and its growth with u and h; 0 where it is clear."""
+    """Depth of a point in an end of a plate, and its growth with u and h; 0 where it does not touch."""
     if u <= 0.0 or h <= 0.0 or h >= thick:
         return 0.0, 0.0, 0.0
     low, sign, radius = (h, 1.0, edge[UPPER]) if h <= 0.5 * thick else (thick - h, -1.0, edge[LOWER])
@@ -210,8 +210,8 @@ def stub(out, a, half, p, sign, end, plate, b, law):
 
 @njit(cache=True, error_model="numpy", forceinline=True)
 def _passes(left, inner, half, radius):
-    """How much of the edge a box has that it meets so far inside of a side: all but near it, where the next
-    box takes over (`inner`), or where a free side ahead comes to the round."""
+    """Part of the edge's law that acts on a box whose side is at the distance `left` from it: 1 except near
+    that side, where the next box takes over (`inner`), or where a free side ahead comes to the round."""
     if inner:
         return min(max(0.5 + left / (4.0 * SHARED * half), 0.0), 1.0)
     return min(max(left / max(radius, 1e-3 * half), 0.0), 1.0)
@@ -219,10 +219,10 @@ def _passes(left, inner, half, radius):
 
 @njit(cache=True, error_model="numpy", forceinline=True)
 def into_corner(face, side, thick):
-    """How deep a point is in the end of a layer, and the growth of that with both: it is `face` inside of the
-    one face of it, which is `thick`, and `side` inside of its end. Outside of both it is below zero by the
-    distance from the corner; inside it is what is less, and passes from one to the other without a jump
-    (Holder's mean of power -NORM)."""
+    """Depth of a point in the end of a layer of thickness `thick`, and its growth with both arguments. `face`
+    and `side`: distances inside of one of its faces, and inside of its end. Outside of both the depth is
+    minus the distance from the corner. Inside it is the lesser of both, with a smooth transition (Holder's
+    mean of power -NORM)."""
     if side <= 0.0 and (face <= 0.0 or face > thick):
         beyond = face if face <= 0.0 else face - thick
         far = math.sqrt(beyond * beyond + side * side)
@@ -269,7 +269,7 @@ def _pressed(out, a, box, face, edge, end, b, law, grip):
         high = i == 2 or exposed & (2 << (2 * i)) != 0
         more = 0.0 if side == 0 else 2.0 * SHARED * half[i]
         least, most = -half[i] - (0.0 if low else more), half[i] + (0.0 if high else more)
-        if side == 1:  # what is behind is on the round as far as that goes
+        if side == 1:  # the part behind is on the round up to its end
             least -= radius if low_behind else 0.0
             most += radius if high_behind else 0.0
         if abs(way[i]) < 1e-12:
@@ -354,8 +354,8 @@ def line(out, a, box, end, plate, b, law):
 
 @njit(cache=True, error_model="numpy", forceinline=True)
 def deepest_at(thick, half, beside):
-    """How deep a box (half lengths) may be in a plate of this half thickness. A box may be as deep as that. A
-    side that stands before an end may be further in, by half of the box: behind it comes the next box."""
+    """Greatest depth of a box (half lengths) in a plate of this half thickness, which it equals. A side that
+    stands before an end may be further in, by half of the box, since the next box follows behind it."""
     return thick if beside == 0 else max(thick, min(half[0], half[1]))
 
 

@@ -40,8 +40,8 @@ FILM = np.dtype(
         ("cell", "i8"),  # first cell; those of a row stand together, the shorter way of the sheet
         ("cells", "i8"),
         ("width", "i8"),  # cells of a row
-        ("across", "i8"),  # whether rows go along y
-        ("acts", "i8"),  # whether any of its cells can close
+        ("across", "i8"),  # 1 where rows go along y
+        ("acts", "i8"),  # 1 where any of its cells can close
         ("viscosity", "f8"),  # [N ms/mm^2]
         ("roughness", "f8"),  # [mm]
         ("wide", "f8"),  # gaps that are wider count as open: the air there is not lubrication any more [mm]

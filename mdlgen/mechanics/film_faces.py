@@ -109,7 +109,7 @@ def cover(film, cells, pair, box, frames, shapes, h):
         if beyond >= own.beyond:
             continue
         v = sub(add(a.v, cross(a.w, sub(at, a.x))), add(b.v, cross(b.w, sub(at, b.x))))
-        # what the guess has gone through in half a step is air that may stop it
+        # air through which the guess has moved in half a step may stop it
         own.beyond, own.pair, own.gap = beyond, number, max(gap, LEAST * (gap + h * dot(v, way)))
         inside = free <= 0.0 and joined <= SLIT * min(wide[0], wide[1])
         own.inside = 1 if inside else 0

@@ -87,7 +87,7 @@ def _side(at, upright, plate):
 
 @njit(cache=True, error_model="numpy", **OWNS, **CALLED)
 def box_guide(out, a, box, b, plate, law):
-    """Box a on guide b, which does not move. A box touches the face on its side.
+    """Box a on guide b, which does not move. A box touches the face on its own side.
 
     The guide's `side` determines the place of the plate, see `upper`: radius and line are those of the face
     that may be touched, or of the plate's middle for both. Points deeper than the thickness of the plate do
@@ -129,7 +129,7 @@ def box_guide(out, a, box, b, plate, law):
             bend = Cylinder((rb[2], rb[5], rb[8]), radius - top + thick, 2.0 * half_b[1])
             own = scaled(law, part, 1.0, law.beta)
             box_sector(out, a, box, b, bend, Sector(to, shape[ARC_ANGLE], zero, False), own)
-            # the part that the round has of k changes as the box turns
+            # the part of k on the round changes as the box turns
             turn(out, rotate(rb, scale((stored - out[STORED]) / part, cross(tilted, slope))))
     else:
         _hollow(out, a, box, b, plate, look, tilted, law)
@@ -185,5 +185,5 @@ def _hollow(out, a, box, b, plate, look, tilted, law):
         where = add(b.x, rotate(rb, point))
         energy = 0.4 * spring * depth
         push(out, where, rotate(rb, way), Load(spring, depth, energy), a, b, law)
-        if ends != 0:  # the part that the face has of k falls as the box turns
+        if ends != 0:  # the part of k on the face decreases as the box turns
             turn(out, rotate(rb, scale(-0.4 * depth * depth * math.sqrt(depth), cross(tilted, slope))))

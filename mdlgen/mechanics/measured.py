@@ -24,9 +24,9 @@ from mdlgen.mechanics.vector import add, dot, scale, sub, three_from
 from mdlgen.model.tables.frictions import MOST_SPEEDS
 from mdlgen.program.kernel import BORROWS, njit
 
-# Columns of what a pair adds up (mechanics.point) that pair_force gives a law, the first one in any case:
-# whether friction is measured, 1, and 2 where mu goes with a pressure that is yet to be found; the stretch;
-# the factors of the sheet's front and back; how many rows the table of speeds has, 0: none, and the table.
+# Columns of the sums of a pair (mechanics.point) that are input of a law, the first one always: 1 where
+# friction is measured, 2 where mu depends on a pressure that is not known yet; the stretch; the factors of
+# the sheet's front and back; number of rows of the table of speeds, 0: none, and the table.
 FIRST = 26
 MEASURED, STRETCH, FRONT, BACK, MANY, TABLE = FIRST, FIRST + 1, FIRST + 4, FIRST + 5, FIRST + 6, FIRST + 7
 END = TABLE + 3 * MOST_SPEEDS

@@ -267,7 +267,7 @@ def _by_the_other(meshes, head, t, face, u, v, z, deepest):
     wall, by = behind(bounds, links, triangles, head.first, head.end, at, face.way, far)
     if by < 0 or dot(face.way, three(triangles[by, NORMAL:])) <= STEEP:
         return False  # the other face has nothing of that triangle
-    # what is as deep as the other face has it anywhere is that, up to round-off
+    # 1e-6: at the limit a triangle counts as one of the other face, in spite of round-off
     return z - wall > (1.0 - 1e-6) * thick - face.through or (face.taken and 2.0 * z > wall)
 
 

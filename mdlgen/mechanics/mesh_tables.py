@@ -23,7 +23,7 @@ HEAD = np.dtype(
         ("basis", "f8"),  # 4/3 w sqrt(2 R) of the roller that it is on, 0: fixed
         ("middles", "i8"),  # depth is looked at in the middles of elements
         ("most", "f8"),  # DEEPEST
-        ("thin", "i8"),  # whether it is thinner than twice that anywhere, or has a sharp edge
+        ("thin", "i8"),  # 1 where some part is thinner than twice that, or an edge is sharp
         ("edge", "f8"),  # radius of its edges, 0: sharp
         ("reach", "f8"),  # greatest distance from the body's centre
         ("unseen", "f8"),  # how far a box may move from one state that is looked at to the next

@@ -192,17 +192,18 @@ def plane_of(kept, owner, other):
 
 @njit(cache=True, error_model="numpy", forceinline=True)
 def moves(owner, other, place):
-    """How the owner moves against the other box, in the owner's axes: at a place p by the velocity + the
-    angular velocity x p; `place`: of the other box."""
+    """Velocity and angular velocity of the owner relative to the other box, in the owner's axes and for its
+    centre: a place p moves by the first + the second x p; `place`: that of the other box."""
     w, far = back(owner.r, owner.w), back(owner.r, other.w)
-    # of the velocity at a point p it is what does not turn: v + w x p - far x (p - place)
+    # the relative velocity at p is v + w x p - far x (p - place), of which the first result is the constant
+    # part
     return add(back(owner.r, sub(owner.v, other.v)), cross(far, place)), sub(w, far)
 
 
 @njit(cache=True, error_model="numpy", forceinline=True)
 def _closing(kept, rate, spin):
-    """How fast two faces close, from what `moves` has: at the middle of the owner's face, and its growth
-    along both of its edges."""
+    """Closing rate of two faces, from the results of `moves`: at the middle of the owner's face, and its
+    growth along both of its edges."""
     return kept.side * rate[2], -kept.side * spin[1], kept.side * spin[0]
 
 

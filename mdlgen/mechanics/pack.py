@@ -189,7 +189,7 @@ def pack_laws(model: Model, layout: np.dtype, chosen: Ints, units: Units = OWN) 
         pairs["law"][:, column] = values[chosen]
     if rows.frictions is not None:
         pairs["measured"] = np.where(in_rows(rows.frictions), np.arange(1, len(rows) + 1), 0)[chosen]
-        # a table of speeds is all that mu goes with the speed by
+        # with a table of speeds mu depends on the speed by that table alone
         tabled = rows.frictions.points[chosen] > 0
         pairs["law"][tabled, LAW_DYNAMIC] = pairs["law"][tabled, LAW_STATIC]
     return pairs

@@ -174,7 +174,7 @@ def box_flat(out, a, box, b, plate, covered, law):
                 continue
             point = add(b.x, rotate(rb, (points[i, 0], points[i, 1], points[i, 2])))
             push(out, point, rotate(rb, way), Load(spring, depth, 0.4 * spring * depth), a, b, law)
-            if ends != 0:  # the part that the face has of k falls as the box turns
+            if ends != 0:  # the part of k on the face decreases as the box turns
                 turn(out, rotate(rb, scale(-0.4 * depth * depth * math.sqrt(depth), cross(inward, slope))))
     if ends != 0:
         box_ends(out, a, box, b, plate, law)

@@ -98,7 +98,7 @@ def profile(body, rims, angle, beta):
     behind = angle - begin < end - angle
     j = (i - 1 if behind else i + 1) % count
     wide = (rims[first + j + 1, _BEGIN] if j + 1 < count else TURN) - rims[first + j, _BEGIN]
-    # a piece may be narrower than what its ends are blended over
+    # a piece may be narrower than the angles over which its ends are blended
     half = min(body.blend, 0.5 * (end - begin), 0.5 * wide)
     away = angle - begin if behind else end - angle
     if away >= half:

@@ -123,7 +123,7 @@ def _gather(pieces, meshes, head, at, axis, one, two, radius):
 
 @njit(cache=True, error_model="numpy")
 def _join(pieces, found, radius):
-    """Gives pieces that hang together one number of a patch."""
+    """Gives connected pieces the same number of a patch."""
     near = _JOINED * radius
     for i in range(found):
         for j in range(i):
