@@ -29,7 +29,7 @@ def emit(
 
 
 def check(model: Model) -> None:
-    """Raises RefusedError by name for what the text cannot represent."""
+    """Raises RefusedError, with the name, for features that the text cannot represent."""
     from mdlgen.backends.motionview.writer import text
 
     text.check(model)

@@ -10,7 +10,7 @@ Triple = tuple[str, str, str]
 
 
 def number(value: float) -> str:
-    """A number as it stands in the deck: the shortest that reads back as the same float."""
+    """A number as written in the deck: the shortest that reads back as the same float."""
     return repr(float(value) + 0.0)  # + 0.0 turns -0.0 into 0.0
 
 

@@ -59,7 +59,7 @@ DefineSystem 1+         System 3+             Attachment 3-6         AttachmentC
 SetAttachmentCandidateTag 2                   DefineAnalysis 1+      Analysis 3+
 SetActiveAnalysis 1     DefineTemplate 1+     Template 4+
 """
-# Names that are easily taken for a statement, and what was meant.
+# Names that are often mistaken for a statement, and the statement that was meant.
 _MEANT = {
     "bushing": "Bush",
     "setbushing": "SetBush",

@@ -48,7 +48,7 @@ class Expansion:
         self._standard: dict[str, Definition] = {}
         self.sets: list[tuple[Statement, Scope, Guard | None, int]] = []
         self.lost: list[Lost] = []
-        self.standing: list[tuple[Statement, Scope, Guard | None]] = []  # all that stands in a living scope
+        self.standing: list[tuple[Statement, Scope, Guard | None]] = []  # all statements in a living scope
         self._count = 0
 
     def run(self) -> World:

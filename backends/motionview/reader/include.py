@@ -92,7 +92,7 @@ class Includes:
         return path, inner
 
     def _path(self, name: str, folder: Path) -> Path:
-        """Where a file is, links followed. Raises Unread for one that is not in the tree of the text."""
+        """Where a file is, links followed. Raises Unread for a file outside of the folder of the text."""
         assert self.folder is not None
         pure = PurePosixPath(name)
         if pure.is_absolute() or "\\" in name or ":" in name or "\0" in name:

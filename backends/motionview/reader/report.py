@@ -37,7 +37,7 @@ class Report(NamedTuple):
 
 
 class Trouble(Exception):
-    """Why something has no value. The same object is kept for all that depends on it, and reported once.
+    """Why something has no value. All values that depend on it share the same object, which is reported once.
 
     `shift` is where in the expression, until `place` is known.
     """

@@ -9,7 +9,7 @@ from mdlgen.units import parse_unit, same
 
 
 def number(value: float) -> str:
-    """A number as it stands in the text: the shortest that reads back as the same float."""
+    """A number as written in the text: the shortest that reads back as the same float."""
     return repr(float(value) + 0.0)  # + 0.0 turns -0.0 into 0.0
 
 
