@@ -146,7 +146,7 @@ def _middle(patch, own):
 
 @njit(cache=True, error_model="numpy")
 def _arm(patch, out, at, motion):
-    """From the middle of a patch to a point, along the faces."""
+    """Vector from the middle of a patch to a point, along the faces."""
     arm = sub(three_from(out, at + AT), add(vec(motion.x, patch.b), three(patch.centre)))
     normal = three(patch.normal)
     return sub(arm, scale(dot(arm, normal), normal))

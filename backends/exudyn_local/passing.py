@@ -41,7 +41,7 @@ class _Carried(NamedTuple):
 
 
 def _taken(system: System, states: Floats) -> _Carried:
-    """From coordinates in the order of a System, (3, free)."""
+    """Converts from coordinates in the order of a System, (3, free)."""
     bodies = system.bodies
     boxes, moves = np.zeros((3, len(bodies), 7)), np.zeros((3, len(bodies), 2))
     free = np.flatnonzero(bodies["first"] >= 0)
@@ -53,7 +53,7 @@ def _taken(system: System, states: Floats) -> _Carried:
 
 
 def _given(system: System, carried: _Carried) -> Floats:
-    """To coordinates in the order of a System, (3, free)."""
+    """Converts to coordinates in the order of a System, (3, free)."""
     bodies, states = system.bodies, np.zeros((3, max(1, system.free)))
     free = np.flatnonzero(bodies["first"] >= 0)
     states[:, bodies["first"][free, None] + np.arange(7)] = carried.boxes[:, free]

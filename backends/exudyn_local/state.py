@@ -63,7 +63,7 @@ class Work(NamedTuple):
 
 
 def workspace(system: System) -> Work:
-    """Such arrays for a System, all zero."""
+    """Work arrays for a System, all zero."""
     n = len(system.bodies)
     motion = Motion(np.zeros((n, 3)), np.zeros((n, 9)), np.zeros((n, 3)), np.zeros((n, 3)))
     return Work(motion, np.zeros(OUT), np.zeros(max(1, system.free)), np.zeros((n, 6)), np.zeros(4, np.int64))

@@ -43,7 +43,7 @@ def companion(model: Model, *, set_contact: bool = False, only: str | None = Non
 
 
 def companion_reasons(model: Model, set_contact: bool = False, only: str | None = None) -> list[str]:
-    """Why the script is needed, one line each; empty where it is not."""
+    """Reasons why the script is needed, one line each; empty where it is not."""
     from mdlgen.backends.motionview.writer import script
 
     return script.reasons(model, set_contact, only)

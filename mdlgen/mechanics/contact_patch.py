@@ -184,7 +184,7 @@ def straight_edges(seen, deep, long):
 
 @njit(cache=True, error_model="numpy", forceinline=True)
 def _crossings(m, s, rm, rs):
-    """Where a place m + s v crosses the bounds of a nip, whose reach squared is rm + rs v."""
+    """Values v at which a place m + s v crosses the bounds of a nip, whose reach squared is rm + rs v."""
     a, b, c = s * s, 2.0 * m * s - rs, m * m - rm
     under = b * b - 4.0 * a * c
     if under < 0.0:

@@ -35,7 +35,7 @@ GRAZE = 1e-9
 
 @njit(cache=True, error_model="numpy")
 def _parting(ra, half_a, exposed, rb, half_b, gap):
-    """How far apart two boxes are along the normals of the first: (whether one of them parts them, distance
+    """Distance of two boxes along the normals of the first: (true if one of them separates them, distance
     along its faces' normal, its sign, greatest distance along a free side, its axis, its sign); overlap is
     negative, and a box without a free side has -1e300."""
     place, turn = back(ra, gap), transpose_matmul(ra, rb)

@@ -107,7 +107,7 @@ def apart(a, half_a, b, half_b, more):
 
 @njit(cache=True, error_model="numpy", forceinline=True)
 def _seen_from(kept, place, turn, wide):
-    """Notes where a box with these half lengths was in the axes of the other one."""
+    """Stores the place of a box with these half lengths in the axes of the other one."""
     for q in range(2):
         kept.place[q], kept.wide[q] = place[q], wide[q]
         for i in range(2):

@@ -182,7 +182,7 @@ def box_flat(out, a, box, b, plate, covered, law):
 
 @njit(cache=True, error_model="numpy", forceinline=True)
 def _inset(point, i, half_b):
-    """How far inside of the end i of a straight plate a point is."""
+    """Distance of a point inside of the end i of a straight plate."""
     sign = 1.0 if i % 2 == 0 else -1.0
     return half_b[0] - sign * point[0] if i < 2 else half_b[1] - sign * point[2]
 

@@ -38,7 +38,7 @@ def root(text: str, file: str) -> etree._Element:
 
 
 def line(element: etree._Element) -> int:
-    """Where the start tag of an element ends, counted from 1."""
+    """Line at which the start tag of an element ends, counted from 1."""
     return int(element.sourceline or 1)
 
 

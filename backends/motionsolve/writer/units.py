@@ -1,4 +1,4 @@
-"""From the Model's units (mm, N, g, ms, rad) to those of the deck (mm, N, kg, s, rad), as text."""
+"""Converts from the Model's units (mm, N, g, ms, rad) to those of the deck (mm, N, kg, s, rad), as text."""
 
 from __future__ import annotations
 

@@ -107,7 +107,7 @@ def meant(statement: Statement) -> str:
 
 
 def complaint(statement: Statement) -> str:
-    """Why the number of arguments is wrong, or an empty text."""
+    """Reason why the number of arguments is wrong, or an empty text."""
     count = len(statement.args)
     name, ranges = RANGES[statement.key]
     for low, high in ranges:

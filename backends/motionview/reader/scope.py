@@ -1,4 +1,4 @@
-"""Where names live: the model, systems, data sets and compound graphics, each with its slots."""
+"""Scopes of names: the model, systems, data sets and compound graphics, each with its slots."""
 
 from __future__ import annotations
 

@@ -1,4 +1,5 @@
-"""From the Model's units (mm, N, g, ms, rad) to those of MotionView (mm, N, kg, s; angles in degrees)."""
+"""Converts from the Model's units (mm, N, g, ms, rad) to those of MotionView (mm, N, kg, s; angles in
+degrees)."""
 
 from __future__ import annotations
 

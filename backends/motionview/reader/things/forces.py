@@ -77,11 +77,11 @@ class _Link(Thing):
         return self.related(3, "Body")
 
     def start(self) -> Vector:
-        """Where i is."""
+        """Place of marker i."""
         return self.position(4)
 
     def end(self) -> Vector:
-        """Where j is."""
+        """Place of marker j."""
         return self.start()
 
     def natural(self) -> Axes:
