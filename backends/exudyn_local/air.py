@@ -1,17 +1,17 @@
-"""Air between sheets: each cell of a film has a coordinate of its own, whose rate is the pressure there.
+"""Air between sheets: each cell of a film has its own coordinate, whose rate is the pressure there.
 
-Hardly a mass moves along it (films.LAG), so that Reynolds' equation of mechanics.film holds at the end of
-each step:
+The mass of the coordinate is very small (films.LAG), so that Reynolds' equation of mechanics.film holds at
+the end of each step:
 
     F_i = s/A_ii (a_i q_i - sum_j A_ij p_j) = 0
 
-with s the area of a whole cell, which makes it a force as those of all other coordinates are. The solver so
-has a sparse matrix: a cell knows its neighbours and the two boxes that it is between, where forces of
-pressures that were solved for beforehand would couple all boxes of two sheets.
+with s the area of a whole cell, which converts it to a force like those of all other coordinates. So the
+matrix of the solver is sparse: a cell is coupled to its neighbours and to the two boxes around it. Pressures
+that were solved for beforehand would couple all boxes of two sheets.
 
-Gaps are those at the end of a step as its first velocities have them, but at least half of those as it began
-(mechanics.film_faces), and stay so in its iterations: F is linear then, and does not jump where faces come to
-touch.
+Gaps are those at the end of a step, predicted by its first velocities, but at least half of those at its
+beginning (mechanics.film_faces). They are frozen in its iterations: so F is linear, and does not jump where
+faces come to touch.
 """
 
 from __future__ import annotations
@@ -29,8 +29,8 @@ BOX = 7  # generalised coordinates of one
 
 @njit(cache=True, error_model="numpy")
 def lay_air(tables, at, h, motion):
-    """Sets the gaps and matrices of all films to those at Coordinates that come h after the begin of a step
-    at the velocities that they have."""
+    """Sets the gaps and matrices of all films to those at Coordinates at their velocities, h after the
+    beginning of a step."""
     film, pairs = tables.film, tables.pairs
     place_all(tables.bodies, at, motion)
     clear_films(film)
@@ -40,7 +40,7 @@ def lay_air(tables, at, h, motion):
     link_films(film)
     for k in range(film.films.size):
         one = film.films[k]
-        if one.acts == 0:  # its pressures are none
+        if one.acts == 0:  # its pressures are zero
             for i in range(one.cell, one.cell + one.cells):
                 film.flow[i, 0] = 1.0
 
@@ -67,8 +67,8 @@ def begin_air(tables, at, motion):
 
 @njit(cache=True, error_model="numpy")
 def air_forces(tables, at, motion, f):
-    """Adds to the generalised forces what the air does, and what its own equations lack. Returns the power
-    that it takes."""
+    """Adds the forces of the air, and the residuals of its own equations, to the generalised forces. Returns
+    the power that it dissipates."""
     film, power = tables.film, 0.0
     q, v, _ = at
     cells, first, flow = film.cells, film.first[0], film.flow

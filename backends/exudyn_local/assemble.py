@@ -1,4 +1,4 @@
-"""A System as bodies of Exudyn, with one object that has all forces and their jacobian."""
+"""A System as bodies of Exudyn, with one object for all forces and their jacobian."""
 
 from __future__ import annotations
 
@@ -102,7 +102,7 @@ def assemble(
             nodes.append(node)
             continue
         for coordinate, mass in ((row["slide"], row["press"][INERTIA]), (row["spin"], row["press"][AXIAL])):
-            if coordinate >= 0 and row["coupled"] != FOLLOWER:  # else it has the node of the one that leads
+            if coordinate >= 0 and row["coupled"] != FOLLOWER:  # else it has the node of its leader
                 rate = starts.get(coordinate, 0.0)
                 v[coordinate] = rate
                 node = mbs.AddNode(Node1D(referenceCoordinates=[0.0], initialVelocities=[rate]))
@@ -130,12 +130,12 @@ def assemble(
     here, rates = (
         np.zeros_like(q),
         np.zeros_like(q),
-    )  # the same at each call: compiled code looks at them once
+    )  # the same arrays at each call, so that their types are checked only once
 
-    laid = [0.0]  # time at whose gaps the air is
+    laid = [0.0]  # time for which the gaps of the air were set
 
     def lay(t: float) -> None:
-        """The gaps of a step that ends at t, before its first iteration."""
+        """Sets the gaps of a step that ends at t, before its first iteration."""
         if cells and t != laid[0]:
             begun = recorder.begun
             guess = Coordinates(begun.q + (t - begun.t) * begun.v, begun.v, t)

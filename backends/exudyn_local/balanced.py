@@ -16,13 +16,13 @@ from mdlgen.results.result import Result
 
 
 def unbalanced_energy(model: Model, result: Result, recorder: Recorder, h: float) -> str | None:
-    """Why the energy does not balance, at the time at which it was furthest off either way.
+    """Reason why the energy does not balance, at the time of the largest error of either sign.
 
-    A sheet rattles faster than a step is long, which the rule damps; a rigid block loses what its impacts get
-    wrong.
+    A sheet vibrates too fast for the step, and the rule damps that; a rigid block loses the error of its
+    impacts.
     """
     if any(sheet.count > 1 for sheet in model.sheets):
-        # what an edge stores as it comes into a nip comes back some steps later: the end counts
+        # the energy that an edge stores as it enters a nip returns some steps later: the end counts
         return audit.reason(model, result.energy, h / MS, audit.LOSS)
     for off in (recorder.gained, recorder.vanished):
         worst = replace(result.energy, balance_error=off / MM / result.energy.scale)

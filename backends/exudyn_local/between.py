@@ -1,4 +1,4 @@
-"""Looks between two steps of the solver, where a fast or thin body may have passed through another one."""
+"""Checks between two steps of the solver, where a fast or thin body may have passed through another one."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from mdlgen.mechanics.pair import pair_force
 from mdlgen.mechanics.point import DEPTH, OUT
 from mdlgen.program.kernel import njit
 
-# Pairs that would have to be looked at more often in a step want a smaller one.
+# Most states of a pair that are checked within a step; a pair that needs more requires a smaller step.
 MOST_LOOKS = 256
 
 
@@ -45,8 +45,8 @@ def _between(body, before, now, part, into):
 
 @njit(cache=True, error_model="numpy")
 def passed(bodies, pairs, shapes, before, rates, now, rates_now, t, dt):
-    """The first pair that was deeper than it may be, or came to another side, in a step of dt from t, or -1;
-    from the coordinates `before` at the velocities `rates` to `now`."""
+    """First pair that was too deep, or changed sides, in a step of dt from t, or -1; the step goes from the
+    coordinates `before` at the velocities `rates` to `now`."""
     count = bodies.size
     first = Motion(np.zeros((count, 3)), np.zeros((count, 9)), np.zeros((count, 3)), np.zeros((count, 3)))
     last = Motion(np.zeros((count, 3)), np.zeros((count, 9)), np.zeros((count, 3)), np.zeros((count, 3)))

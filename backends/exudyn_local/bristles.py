@@ -10,15 +10,15 @@ forces of a state. For each point, by Dupont, Hayward, Armstrong and Altpeter (I
 alpha is 0 up to the limit, x = 1, so a patch that holds does not creep, however its load changes. Beyond
 the limit alpha is (x - 1)/BEYOND, so a patch that slides has x = 1 + BEYOND. In that paper alpha rises
 smoothly to 1 and stays there. Where a step slides by many limits, as when a sheet has just touched, Newton's
-method then alternates between the two sides of the rise. A rise without end is convex in x, and Newton's
-method comes down on the solution from above. The force has the limit mu N:
+method then alternates between the two sides of the rise. An unbounded rise is convex in x, and Newton's
+method converges to the solution from above. The force has the limit mu N:
 
     f_i = -N_i min(k_t |s|/N, mu) s/|s|,    s = z_i + h (v_i - r z_i),
 
 with h the step. As in lattice this is the spring with a damper k_t h. Without it a sheet that sticks would
-oscillate on, since the integrator damps almost nothing that it resolves. A patch that creeps steadily,
-v_i = r z_i, has the force of its spring alone. The part of the rate that alpha makes is left out of s: it
-would turn the force round where a step has slid far. A stretch beyond the limit, after the motion turns back
+keep oscillating, since the integrator damps almost nothing that it resolves. A patch that creeps steadily,
+v_i = r z_i, has the force of its spring alone. The part of the rate due to alpha is omitted from s: it
+would reverse the force where a step has slid far. A stretch beyond the limit, after the motion turns back
 or N falls, decays with the time constant h; so does all of it if nothing presses. Both vanish with the step.
 
 The field changes by the rigid rate that fits the rates of the points best, with the weights N_i. Its
@@ -146,7 +146,7 @@ def _middle(patch, own):
 
 @njit(cache=True, error_model="numpy")
 def _arm(patch, out, at, motion):
-    """From the middle of a patch to a point, along the faces."""
+    """Vector from the middle of a patch to a point, along the faces."""
     arm = sub(three_from(out, at + AT), add(vec(motion.x, patch.b), three(patch.centre)))
     normal = three(patch.normal)
     return sub(arm, scale(dot(arm, normal), normal))
@@ -271,7 +271,7 @@ def release(tables, k, v, f):
 
 @njit(cache=True, error_model="numpy")
 def onto(tables, p, q, out, f):
-    """Adds what a pair does to the generalised forces."""
+    """Adds the forces of a pair to the generalised forces."""
     pair = tables.pairs[p]
     spread(tables.bodies, pair.a, q, three_from(out, FORCE_A), three_from(out, TORQUE_A), f)
     spread(tables.bodies, pair.b, q, three_from(out, FORCE_B), three_from(out, TORQUE_B), f)

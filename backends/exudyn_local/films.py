@@ -1,4 +1,4 @@
-"""Air between sheets: the arrays that a run has of it."""
+"""Arrays of a run for the air between sheets."""
 
 from __future__ import annotations
 
@@ -10,10 +10,10 @@ from mdlgen.mechanics.film_grid import film_grids
 from mdlgen.mechanics.pack import Units
 from mdlgen.model.tables import Floats, Ints, Model
 
-# Pressures come so much too late [s]: a coordinate without any mass has no acceleration to begin with.
+# Delay of pressures [s], due to the mass of their coordinates, which need one for an initial acceleration.
 LAG = 1e-9
-# Most entries that a cell has in the jacobian: itself and its neighbours, and the coordinates of both boxes
-# that it is between, either way.
+# Most entries of a cell in the jacobian: itself and its neighbours, and the coordinates of the two boxes
+# around it, in rows and in columns.
 MOST_ENTRIES = 5 + 2 * 2 * 7
 
 

@@ -45,7 +45,7 @@ from mdlgen.mechanics.vector import (
 )
 from mdlgen.program.kernel import njit
 
-# Either way of a time the speed of a drive is taken for its growth [s].
+# Half of the time span over which the growth of the speed of a drive is evaluated [s].
 INSTANT = 1e-7
 
 
@@ -97,8 +97,8 @@ def _hinge_force(tables, hinge, one, two, q, f):
 
 @njit(cache=True, error_model="numpy")
 def end_hinges(tables, at, motion, starts):
-    """Changes the plastic rotations of all hinges as a step ends at a state; `starts`: a run starts, nothing
-    has changed yet. Returns what that dissipates [J]."""
+    """Updates the plastic rotations of all hinges as a step ends at a state; `starts`: a run starts, nothing
+    has changed yet. Returns the dissipated energy [J]."""
     place_all(tables.bodies, at, motion)
     lost = 0.0
     for k in range(tables.hinges.size):

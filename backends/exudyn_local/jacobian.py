@@ -21,7 +21,7 @@ from mdlgen.program.kernel import njit
 
 # Perturbations of the difference quotients: positions and Euler parameters, velocities [SI]. A static run
 # takes central quotients: a joint bends 1e5 times easier than it stretches, and a one-sided quotient of the
-# stretching part would hide the bending; in a transient run the mass stands in between.
+# stretching part would hide the bending; in a transient run the mass dominates.
 _E_POSITION, _E_VELOCITY = 1e-9, 1e-6
 _E_CENTRAL = 1e-7
 
@@ -71,7 +71,7 @@ def _element(tables, block_start, element, at, level, work):
 def jacobian(tables, elements, at, level, by, central, owner, work, data):
     """data = -(by[0] dF/dq + by[1] dF/dv) in the slots of the pattern, by difference quotients.
 
-    One quotient per coordinate gives both parts: q and v are moved together in the ratio wanted.
+    One quotient per coordinate yields both parts: q and v are perturbed together in the ratio of `by`.
     """
     block_start, dofs, dof_start, slots, slot_start = elements
     bodies, motion, f, (by_q, by_v) = tables.bodies, work.motion, work.forces, by

@@ -1,8 +1,8 @@
-"""Runs in which sheets come in and leave: one part after the other, each of the sheets that are there.
+"""Runs in which sheets come in and leave: consecutive parts, each with the sheets that are present.
 
-A part has bodies of Exudyn for these alone. Boxes of others stand far away, where nothing meets them. A part
-ends where a sheet comes in, or has left. How that is found is said in the lattice's integrate.passing: steps
-end where a sheet would be beyond its plane at the velocity that it has.
+A part has bodies of Exudyn for these alone. Boxes of others are far away, where nothing meets them. A part
+ends where a sheet comes in, or has left. The time is found as in the lattice's integrate.passing: steps end
+where a sheet would be beyond its plane at its present velocity.
 """
 
 from __future__ import annotations
@@ -23,10 +23,11 @@ from mdlgen.model.passing import NEAR, far
 from mdlgen.model.rotations import euler_parameters
 from mdlgen.model.tables import Floats, Ints, Model
 
-# Of a step: nearer than this to the end of one an event is there.
+# Part of a step: an event nearer than this to the end of a step counts as at that end.
 SAME = 1e-6
 
-# Takes so many steps of a size [s], whether accelerations are known, from a time on [s]; why it could not.
+# Function of a number of steps, their size [s], whether accelerations are known, and the time of the first
+# [s]: takes the steps, and returns the reason of a failure.
 Go = Callable[[Assembly, int, float, bool, float], str | None]
 
 
@@ -40,7 +41,7 @@ class _Carried(NamedTuple):
 
 
 def _taken(system: System, states: Floats) -> _Carried:
-    """From coordinates in the order of a System, (3, free)."""
+    """Converts from coordinates in the order of a System, (3, free)."""
     bodies = system.bodies
     boxes, moves = np.zeros((3, len(bodies), 7)), np.zeros((3, len(bodies), 2))
     free = np.flatnonzero(bodies["first"] >= 0)
@@ -52,7 +53,7 @@ def _taken(system: System, states: Floats) -> _Carried:
 
 
 def _given(system: System, carried: _Carried) -> Floats:
-    """To coordinates in the order of a System, (3, free)."""
+    """Converts to coordinates in the order of a System, (3, free)."""
     bodies, states = system.bodies, np.zeros((3, max(1, system.free)))
     free = np.flatnonzero(bodies["first"] >= 0)
     states[:, bodies["first"][free, None] + np.arange(7)] = carried.boxes[:, free]
@@ -77,14 +78,14 @@ class Parts:
             self._sheet[sheet.first : sheet.first + sheet.count] = k
 
     def react(self, reacting: Reacting | None) -> None:
-        """A machine reacts in this run; None: it does not."""
+        """Sets the machine that reacts in this run; None: there is none."""
         self._reacting = reacting
         if reacting is not None:
             reacting.follow(self.assembly.system, ~self._gone)
             reacting.enter = self._enter
 
     def _enter(self, sheets: tuple[int, ...], t: float) -> None:
-        """The first of these that has not come yet, nor is about to, comes in at a time [s]."""
+        """Lets the first of these sheets that has no time yet come in at a time [s]."""
         waits = self._coming()
         for sheet in sheets:
             if waits[sheet] and math.isinf(self._enters[sheet]):
@@ -97,7 +98,7 @@ class Parts:
         return self.assembly
 
     def run(self) -> str | None:
-        """Goes to the end; why it could not, None: it could."""
+        """Runs to the end; returns the reason of a failure, or None."""
         end, h = self._model.run.duration * MS, self._h
         t = 0.0
         if self._reacting is not None:
@@ -118,8 +119,8 @@ class Parts:
         return None
 
     def _next(self, t: float, end: float) -> tuple[int, float]:
-        """How many steps come next, and how long they are [s]: whole ones up to where a sheet comes in, or
-        one up to that, to where a sheet leaves, or to the next whole one."""
+        """Number and size [s] of the next steps: whole ones up to the time at which a sheet comes in; or one
+        shorter step up to that time, to where a sheet leaves, or to the next whole one."""
         h, slack = self._h, SAME * self._h
         to = min(end, float(self._enters[self._coming()].min(initial=math.inf)))
         if self._reacting is not None:
@@ -131,7 +132,7 @@ class Parts:
         return max(1, math.floor((to - t) / h + SAME)), h
 
     def _stretch(self, count: int, t: float, h: float) -> str | None:
-        """Takes steps, or waits where nothing is there that moves."""
+        """Takes steps, or only advances the time where no body moves."""
         recorder, assembly = self._recorder, self.assembly
         if assembly.system.free == 0:
             recorder.wait(t, count, h)
@@ -141,7 +142,7 @@ class Parts:
         recorder.ahead = lambda: self._leaves() < self._h
         if self._reacting is not None:
             recorder.watch(self._reacting, count > 1)
-        # accelerations are those that the part before ended with
+        # accelerations are those at the end of the part before
         reason = self._go(assembly, count, h, t > 0.0 or recorder.touching > 0, t)
         data, first = assembly.mbs.systemData, self._exu.ConfigurationType.Initial
         for put, get in (
@@ -160,7 +161,7 @@ class Parts:
         return self._gone & np.isnan(self._recorder.stays[:, 0])
 
     def _leaves(self) -> float:
-        """After what time the next sheet would leave at the velocity that it has [s]."""
+        """Time until the next sheet would leave at its present velocity [s]."""
         found, (x, r, u, _) = math.inf, self._recorder.motion
         for k in np.flatnonzero(~self._gone).tolist():
             sheet = self._model.sheets[k]

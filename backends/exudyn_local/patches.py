@@ -1,4 +1,4 @@
-"""Friction that sticks: the arrays that a run has of its contact patches."""
+"""Arrays of a run for its contact patches with friction that sticks."""
 
 from __future__ import annotations
 

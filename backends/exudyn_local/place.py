@@ -1,5 +1,5 @@
-"""Places and velocities of all bodies at the solver's coordinates, whose coordinate each is, and what forces
-at bodies are along them."""
+"""Places and velocities of all bodies at the solver's coordinates; the body of each coordinate; generalised
+forces of forces at bodies."""
 
 from __future__ import annotations
 
@@ -83,7 +83,7 @@ def place_body(bodies, body, at, motion):
         rate += v[k]
     for i in range(3):
         w[body, i] += rate * bodies[body].axis[i]
-    if bodies[body].carries != 0:  # a mesh shows how far the roller has turned, a plate that turns is seen to
+    if bodies[body].carries != 0:  # the rotation matters for a roller with a mesh, and for a plate that turns
         angle = ratio * q[spin] if spin >= 0 else turned(bodies[body], t)
         if bodies[body].swings == 2:
             angle += q[k]
@@ -94,7 +94,7 @@ def place_body(bodies, body, at, motion):
 
 @njit(cache=True, error_model="numpy")
 def place_owner(bodies, body, at, motion):
-    """As place_body, and of a roller on a shaft all that turn with it."""
+    """As place_body; for a roller on a shaft, also all rollers that turn with it."""
     place_body(bodies, body, at, motion)
     if bodies[body].coupled != ALONE:
         for other in range(bodies.size - 1):
@@ -153,7 +153,7 @@ def set_owners(bodies, owner):
 
 def owners(system: System) -> Ints:
     """Body of each coordinate."""
-    # coordinates of patches and of air are of no body; the ground, the last one, stays where it is
+    # coordinates of patches and of air belong to no body; the ground, the last one, does not move
     owner = np.full(system.free, len(system.bodies) - 1, np.int64)
     set_owners(system.bodies, owner)
     return owner

@@ -1,4 +1,4 @@
-"""Stress of sheets that do not start in their shape at rest, which a static run can bring on in steps."""
+"""Stress of sheets that do not start in their shape at rest, which a static run can apply in steps."""
 
 from __future__ import annotations
 
@@ -12,8 +12,8 @@ from mdlgen.model.tables import Model
 
 
 def bring_on(model: Model, system: System) -> Callable[[float], None]:
-    """Returns what sets the rotations in which bushings are stress-free to a part, 0 to 1, of those of the
-    Model: with 0 the start has no stress, where Newton's iteration begins without a jump."""
+    """Returns a function that sets the stress-free rotations of bushings to a part, 0 to 1, of those of the
+    Model. With 0 the start has no stress, so that Newton's iteration begins without a jump."""
     bushings, table = system.bushings, model.bushings
     rows = bushings["row"]
     rotation = np.concatenate([model.bodies.rotation, np.eye(3)[None]])[table.b[rows]]

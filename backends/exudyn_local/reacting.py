@@ -1,4 +1,4 @@
-"""A run whose machine reacts: it is made in parts, which end where sensors and rules ask for it."""
+"""A run whose machine reacts: it is made in parts, which end at events of sensors and rules."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from mdlgen.reactions.commands import JUMP, Commands, Units
 from mdlgen.reactions.machine import SOON, Machine, RunawayError
 from mdlgen.reactions.sensing import Poses
 
-# When a jump of a speed is over, in its time (convention).
+# End of a jump of a speed, relative to its duration (convention).
 AFTER = 2.0
 
 
@@ -31,11 +31,11 @@ class Reacting:
         self.enter: Callable[[tuple[int, ...], float], None] = lambda sheets, t: None
 
     def until(self, t: float) -> float:
-        """Up to which time from t on the next step may go [s]."""
+        """Latest end of the next step from t on [s]."""
         return self.machine.ahead(t / MS, self._h / MS, self._poses()) * MS
 
     def look(self, t: float) -> bool:
-        """Carries out what is to be done at a time [s]; whether something was. Raises RunawayError."""
+        """Executes the orders at a time [s]; returns True if there were any. Raises RunawayError."""
         orders = self.machine.look(t / MS, self._h / MS, self._poses())
         for order in orders:
             if order.kind == "enter":
@@ -52,12 +52,12 @@ class Reacting:
         return bool(orders)
 
     def follow(self, system: System, there: NDArray[np.bool_]) -> None:
-        """From now on the records are those of this System, which has the sheets that are `there` alone."""
+        """Uses the records of this System, which has only the sheets that are `there`, from now on."""
         self._system, self.machine.there = system, there
         self._commands.write(system.bodies)
 
     def undo(self) -> None:
-        """Leaves the System as it was, for another run."""
+        """Restores the System for another run."""
         if len(self._bodies) == len(self._system.bodies):
             self._system.bodies[:] = self._bodies
 
@@ -68,7 +68,7 @@ class Reacting:
 
 def in_parts(run: Any, mbs: Any, settings: Any, exu: Any, reacting: Reacting, recorder: Recorder) -> bool:
     """Runs Exudyn's dynamic solver from one event to the next, `settings` being those of the whole run;
-    whether it came to its end. A part begins with the accelerations that the one before ended with."""
+    returns True if it reached its end. A part begins with the accelerations at the end of the one before."""
     times = settings.timeIntegration
     count, end = times.numberOfSteps, times.endTime
     h, t = end / count, 0.0

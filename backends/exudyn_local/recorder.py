@@ -1,4 +1,4 @@
-"""Keeps what a run passes through: stored states, contact statistics, the energy balance, the bounds."""
+"""Recorder of a run: stored states, contact statistics, the energy balance, the bounds."""
 
 from __future__ import annotations
 
@@ -55,7 +55,7 @@ class Recorder:
     def __init__(self, model: Model, system: System, progress: Callable | None, until: float = math.inf):
         self._until = until  # when `run.limit` is over, of time.perf_counter [s]
         self.model, self.system, self.progress = model, system, progress
-        # the same at each step, so that compiled code looks at them once
+        # the same arrays at each step, so that their types are checked only once
         self._tables = system.tables
         self._state, self._before = np.zeros((2, 2, max(1, system.free)))  # coordinates and velocities
         self._q, self._v = self._state
@@ -98,17 +98,17 @@ class Recorder:
         self._places = np.append(model.bodies.position * MM, np.zeros((1, 3)), axis=0)  # where those are left
         self._turns = np.append(model.bodies.rotation.reshape(-1, 9), np.zeros((1, 9)), axis=0)
         self._entered = self._went = 0.0  # energy that came in, and left [J]
-        # whether a part of the run ends before the next step (no), and whether it did
+        # function: true if a part of the run ends before the next step (here never); and true if it did
         self.ahead: Callable[[], bool] = bool
         self.stopped = False
 
     def rebase(self, system: System, gone: Mask, boxes: Mask, at: Coordinates | None) -> None:
         """From now on the System has no sheets `gone` (sheets,), of the boxes (bodies + 1,). `at`: the state,
-        whose energy is booked; None: the run begins."""
+        whose energy is added to the balance; None: the run begins."""
         fresh = boxes.copy()
         fresh[self._boxes] = False
         x, r, _, _ = self._work.motion
-        if at is not None:  # what has left stays where it was seen last
+        if at is not None:  # a sheet that has left keeps its last place
             self._places[fresh], self._turns[fresh] = x[fresh], r[fresh]
         came = np.setdiff1d(self._boxes, np.flatnonzero(boxes))
         system.given_up[:] = self.system.given_up
@@ -135,7 +135,7 @@ class Recorder:
         self._first = [first + more for first, more in zip(self._first, gained.tolist(), strict=True)]
 
     def wait(self, t: float, count: int, h: float) -> None:
-        """Goes so many steps of h on, where nothing moves."""
+        """Advances the time by a number of steps of h, where no body moves."""
         end = t + count * h
         for time in [*self._due[(self._due > t) & (self._due < end)].tolist(), end]:
             self.steps += 1
@@ -187,11 +187,11 @@ class Recorder:
         return self.reason is None and not (self.parted or self.finished or self.stopped)
 
     def watch(self, reacting: Reacting, parts: bool) -> None:
-        """From now on a machine reacts after each step; `parts`: the solver ends where that asks for it."""
+        """Sets the machine that reacts after each step; `parts`: the solver ends at its events."""
         self._reacting, self._parts, self.parted = reacting, parts, False
 
     def book(self, times: float, slide: int) -> None:
-        """The work of what changed the force of a spring: so many newtons times where it is."""
+        """Adds the work of a change of a spring's force: that change [N] times the place of the spring."""
         work = times * float(self._q[slide])
         self._driven += work
         self._through += abs(work)
@@ -213,7 +213,7 @@ class Recorder:
 
     @property
     def begun(self) -> Coordinates:
-        """The state as the last step ended."""
+        """State at the end of the last step."""
         return Coordinates(self._last_q, self._last_v, self.time)
 
     def store(self, q: np.ndarray, v: np.ndarray, t: float) -> None:
@@ -369,7 +369,7 @@ class Recorder:
         )
 
     def _off(self, energies: list[float]) -> float:
-        """Energy that is there and came from nowhere since the start [J]."""
+        """Energy error since the start: energy without a source [J]."""
         assert self._first is not None, "something was observed"
         kinetic, elastic, potential = energies[:3]
         first = self._first[KINETIC] + self._first[ELASTIC] + self._first[POTENTIAL]

@@ -12,7 +12,7 @@ from mdlgen.model.yielding import refuse_static_yield
 
 
 def check(model: Model) -> None:
-    """Raises RefusedError by name for what it cannot."""
+    """Raises RefusedError, with the name, for features that it cannot represent."""
     refuse_externals(model, "Exudyn")
     refuse_sticking(model, "Exudyn", kinds=(BOX_BOX,))
     refuse_searched(model, "Exudyn")

@@ -23,7 +23,7 @@ _overstretched, _remember = curve.overstretched, pair.remember
 
 @njit(cache=True, error_model="numpy")
 def begin(bodies, pairs, shapes, at, motion):
-    """Notes what pairs remember, for what begins at a state."""
+    """Updates the memory of pairs at a state, for a step or a run that begins there."""
     place_all(bodies, at, motion)
     _remember(bodies, pairs, shapes, motion)
 

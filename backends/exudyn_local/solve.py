@@ -1,7 +1,7 @@
-"""Runs a Model in Exudyn and checks what came out.
+"""Runs a Model in Exudyn and checks the result.
 
 Exudyn's own success flag is not trusted: the end time must be reached, the state finite, Newton converged
-(an exception otherwise), the energy kept, and the boxes within the bounds from which the contacts were
+(an exception otherwise), the energy balanced, and the boxes within the bounds for which the contacts were
 chosen. A run in which a body leaves these is begun again with a wider margin.
 """
 
@@ -58,7 +58,7 @@ DIVERGED = "Exudyn did not converge"
 # second.
 ESTIMATED, REFINED = 6.0, 30.0
 MOST_REFINED = 5
-# A step that is given is compared with twice that step where a run has so many of them, else with half.
+# A given step is compared with twice that step where a run has at least this many steps, else with half.
 FEWEST = 4
 
 Progress = Callable[[float, float, int, int], None]
@@ -66,12 +66,12 @@ Progress = Callable[[float, float, int, int], None]
 
 @PROGRAM.releases
 def solve(model: Model, progress: Progress | None = None, step: float | None = None) -> Result:
-    """Run a Model; `progress(time, end, steps, touching)` is called as it goes (times in ms).
+    """Run a Model; `progress(time, end, steps, touching)` is called during the run (times in ms).
 
-    `step` [ms], or the Model's own, is taken as it is. Without either the step follows from the tolerance and
-    the shortest impact in the scene, and is halved until what the tolerance judges is estimated to be within
-    it. Where two runs would take long there is one, and no estimate; the step is halved where it fails a
-    check. A failed run returns a Result with its reason; RefusedError is raised for what the backend cannot
+    `step` [ms], or the Model's own, is used as it is. Without either the step follows from the tolerance and
+    the shortest impact in the scene, and is halved until the estimated errors are within the tolerance. Where
+    two runs would take long there is one, and no estimate; the step is halved where it fails a check. A
+    failed run returns a Result with its reason; RefusedError is raised for features that the backend cannot
     represent.
     """
     check(model)
@@ -108,8 +108,8 @@ def solve(model: Model, progress: Progress | None = None, step: float | None = N
 def _compared(
     model: Model, system: System, once: Callable[[int, float], Result], until: float, result: Result
 ) -> Result:
-    """The run at a step that is given, with its estimate from one at twice that step, or at half of it where
-    there are few; where two runs would take long, or `run.limit` is near, its error is not known."""
+    """The run at a given step, with its estimate from one at twice that step, or at half of it where there
+    are few steps. Where two runs would take long, or `run.limit` is near, its error is not known."""
     if not result.ok:
         return result
     count = round(model.run.duration / result.step)
@@ -142,7 +142,7 @@ def _estimated(result: Result, coarser: Sequence[Result]) -> Result:
 def _refined(
     model: Model, system: System, once: Callable[[int, float], Result], until: float, count: int, h: float
 ) -> Result:
-    """Halves the step until what the tolerance judges is estimated within it; where it never is, the finest
+    """Halves the step until the estimated errors are within the tolerance; where they never are, the finest
     complete run is the result, with its estimate."""
 
     def affords(last: Result) -> bool:
@@ -152,7 +152,7 @@ def _refined(
 
     if cost(system, count) > ESTIMATED:
         result = once(count, h)
-        # one that came to its end, and fails a check of that, is tried at a finer step
+        # a run that reached its end and fails a check is repeated at a finer step
         while not result.ok and result.time[-1] >= model.run.duration * (1 - 1e-9):
             if not affords(result):
                 break
@@ -181,7 +181,7 @@ def _refined(
 
 
 def _best(runs: list[Result], why: str) -> Result:
-    """The finest complete one of runs, the last first, after a search for a step that ended."""
+    """The finest complete run, of `runs` with the last first, after a search for a step."""
     last = runs[0]
     k = next((k for k, run in enumerate(runs) if run.ok), 0)
     best = runs[k]
@@ -197,7 +197,7 @@ def _best(runs: list[Result], why: str) -> Result:
 
 
 class _Runs:
-    """Runs of one scene; those that follow one that needed a wider margin have it from their start."""
+    """Runs of one scene; after a run that needed a wider margin, all later ones have it from their start."""
 
     def __init__(
         self,
@@ -210,7 +210,7 @@ class _Runs:
     ):
         self._exu, self._model, self._built = exu, model, built
         self._progress, self._until = progress, until
-        self._in_steps = in_steps  # the stress that sheets start with comes on with the load of a static run
+        self._in_steps = in_steps  # the initial stress of sheets is applied with the load of a static run
 
     def once(self, count: int, h: float) -> Result:
         """One run of `count` steps of h [s], or a static one of as many steps of the load, where h is 0."""
@@ -284,7 +284,7 @@ def _once(
     if recorder.finished:
         model = replace(model, run=replace(model.run, duration=recorder.time / MS))
         recorder.model = model
-    # the reached time is kept by our own step function, not by the solver's flag
+    # the reached time is recorded by our own step function, not by the solver's flag
     if reason is None and not static and recorder.time < model.run.duration * MS * (1 - 1e-9):
         reason = f"stopped at {recorder.time / MS:.6g} ms, before the end at {model.run.duration:g} ms"
     if reason is None and static:

@@ -12,15 +12,15 @@ from mdlgen.mechanics.arm import AXIAL, INERTIA
 from mdlgen.mechanics.records import FOLLOWER
 from mdlgen.model.tables import Floats
 
-# A balance that is left so slowly that it grows e-fold in a second stands still [rad/s].
+# A balance is stable where a disturbance needs a second or more to grow e-fold [rad/s].
 SLOW = 1.0
 
 
 def falling(system: System, pattern: Pattern, q: Floats, work: Work) -> int:
-    """Number of directions in which a balance at q falls, by the signs of the pivots of K + SLOW^2 M.
+    """Number of directions in which a balance at q is unstable, by the signs of the pivots of K + SLOW^2 M.
 
-    K is minus the derivative of the generalised forces; Euler parameters are reduced to turns, along which
-    alone they move. -1 where the factor needed other pivots than the diagonal, so that nothing is known.
+    K is minus the derivative of the generalised forces; Euler parameters are reduced to rotations, along
+    which alone they move. -1, unknown, where the factor needed other pivots than the diagonal.
     """
     from scipy.sparse import csc_matrix, csr_matrix
     from scipy.sparse.linalg import splu

@@ -53,8 +53,8 @@ class Coordinates(NamedTuple):
 
 
 class Work(NamedTuple):
-    """Arrays to work in: the motion of all bodies, what a pair does, generalised forces; what a corner does,
-    and to which bodies."""
+    """Work arrays: the motion of all bodies, the result of a pair, generalised forces; the forces of a
+    corner, and their bodies."""
 
     motion: Motion
     out: Floats  # (OUT,)
@@ -64,7 +64,7 @@ class Work(NamedTuple):
 
 
 def workspace(system: System) -> Work:
-    """Such arrays for a System, all zero."""
+    """Work arrays for a System, all zero."""
     n = len(system.bodies)
     motion = Motion(np.zeros((n, 3)), np.zeros((n, 9)), np.zeros((n, 3)), np.zeros((n, 3)))
     return Work(motion, np.zeros(OUT), np.zeros(max(1, system.free)), np.zeros((n, 6)), np.zeros(4, np.int64))

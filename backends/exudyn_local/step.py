@@ -1,4 +1,4 @@
-"""The time step that a tolerance asks for, and what a run at it costs."""
+"""The time step that a tolerance requires, and the cost of a run at it."""
 
 from __future__ import annotations
 

@@ -41,7 +41,7 @@ MM, G, MS = 1e-3, 1e-3, 1e-3
 PER_MM = 1e3
 SI = Units(mm=MM, per_mm=PER_MM, g=G, ms=MS, hertz=1e3**1.5, mpa=1e6)
 
-# How far from each other, and from the machine, sheets stand that are not there [m]: no machine is as large.
+# Distance of absent sheets from each other and from the machine [m]: no machine is as large.
 FAR_AWAY = 1e3
 # Where the Euler parameters are among the coordinates of a box, and in `reference`; before them its position.
 EULER = 3
@@ -131,8 +131,8 @@ def check(model: Model) -> None:
 
 
 def build(model: Model, gone: NDArray[np.bool_] | None = None) -> tuple[System, Pattern]:
-    """Arrays and jacobian pattern of a Model; `gone` (sheets,): sheets that are not there, which stand far
-    away and have no coordinates."""
+    """Arrays and jacobian pattern of a Model; `gone` (sheets,): absent sheets, which are far away and have no
+    coordinates."""
     check(model)
     moving = model.run.analysis == "transient"
     bodies, free = _bodies(model, moving, gone)

@@ -35,7 +35,7 @@ def yielding(model: Model, joints: np.ndarray, of: Ints) -> Yielding:
 def halved(
     whole: Yielding, joints: np.ndarray, kept: np.ndarray, image: Ints, across: np.ndarray
 ) -> Yielding:
-    """Those of one side of a scene, whose joints are those `kept` of the whole. `image`: of each body;
+    """Hinges of one side of a scene, whose joints are those `kept` of the whole. `image`: that of each body;
     `across`: joints of the whole that join a box to its own image."""
     number = np.cumsum(kept) - 1
     ground = len(image)

@@ -21,7 +21,7 @@ def emit(model: Model) -> str:
 
 
 def check(model: Model) -> None:
-    """Raises RefusedError by name for what the deck cannot represent."""
+    """Raises RefusedError, with the name, for features that the deck cannot represent."""
     from mdlgen.backends.motionsolve.writer import text
 
     text.check(model)

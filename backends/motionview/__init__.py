@@ -29,7 +29,7 @@ def emit(
 
 
 def check(model: Model) -> None:
-    """Raises RefusedError by name for what the text cannot represent."""
+    """Raises RefusedError, with the name, for features that the text cannot represent."""
     from mdlgen.backends.motionview.writer import text
 
     text.check(model)
@@ -43,7 +43,7 @@ def companion(model: Model, *, set_contact: bool = False, only: str | None = Non
 
 
 def companion_reasons(model: Model, set_contact: bool = False, only: str | None = None) -> list[str]:
-    """Why the script is needed, one line each; empty where it is not."""
+    """Reasons why the script is needed, one line each; empty where it is not."""
     from mdlgen.backends.motionview.writer import script
 
     return script.reasons(model, set_contact, only)

@@ -21,7 +21,7 @@ def emit(model: Model) -> str:
 
 
 def check(model: Model) -> None:
-    """Raises RefusedError by name for what the script cannot represent."""
+    """Raises RefusedError, with the name, for features that the script cannot represent."""
     from mdlgen.backends.msolve.writer import text
 
     text.check(model)

@@ -1,11 +1,11 @@
-"""Rollers on arms that pivot: where a turn of the arm moves them, and what turns it.
+"""Rollers on arms that pivot: their motion with the rotation of the arm, and the torques on it.
 
 The unknown of such a roller's slide is the angle of its arm. A free roller's spin is counted against ground;
 a driven one's drive is against the arm, with which the roller turns. A body record has `swings`, 1 where it
 is on an arm and 2 where it is also driven (0: its slide, if any, is straight; beyond 2: see mechanics.gate);
-`pivot`, a point of the arm's axis; `turn`, that axis; and `hang`, the arm's own mass times the way from the
-pivot to its centre of mass, as the run begins. Its `press` has torsional stiffness and damping, the torque
-at the angle 0, and the inertia of all that turns about the pivot.
+`pivot`, a point of the arm's axis; `turn`, that axis; and `hang`, the arm's own mass times the vector from
+the pivot to its centre of mass, as the run begins. Its `press` has torsional stiffness and damping, the
+torque at the angle 0, and the moment of inertia of all bodies that turn about the pivot.
 """
 
 from __future__ import annotations
@@ -47,7 +47,7 @@ def arm(row: np.void, roller: RollerPart, length: float = 1.0, mass: float = 1.0
 
 @njit(cache=True, error_model="numpy", forceinline=True)
 def way_of(body, x):
-    """Velocity of a roller at x for 1 of its slide: along it, or round the pivot of its arm."""
+    """Velocity of a roller at x per unit rate of its slide: along it, or round the pivot of its arm."""
     if body.swings == 0:
         return three(body.way)
     return cross(three(body.turn), sub(x, three(body.pivot)))
@@ -55,13 +55,13 @@ def way_of(body, x):
 
 @njit(cache=True, error_model="numpy", forceinline=True)
 def turn_of(body):
-    """Angular velocity of a roller for 1 of its slide."""
+    """Angular velocity of a roller per unit rate of its slide."""
     return three(body.turn) if body.swings == 2 else (0.0, 0.0, 0.0)
 
 
 @njit(cache=True, error_model="numpy", forceinline=True)
 def moved(body, x, amount):
-    """Where a roller at x is after its slide has moved by an amount."""
+    """Place of a roller, now at x, after its slide has moved by an amount."""
     if body.swings == 0:
         return add(x, scale(amount, three(body.way)))
     pivot = three(body.pivot)
@@ -70,14 +70,14 @@ def moved(body, x, amount):
 
 @njit(cache=True, error_model="numpy")
 def hung(body, angle, gravity):
-    """Energy of the weight of an arm itself at its angle, from that of its pivot on."""
+    """Potential energy of the weight of an arm itself at its angle, relative to its pivot."""
     return -dot(rotate(exp_rotation(scale(angle, three(body.turn))), three(body.hang)), gravity)
 
 
 @njit(cache=True, error_model="numpy")
 def torque_of(body, angle, gravity, t, h):
-    """Torque about the pivot [of the slide's unknown]: of the arm's own weight, and of what a drive speeds up
-    from t - h to t + h."""
+    """Torque about the pivot, on the unknown of the slide: of the arm's own weight, and of the acceleration
+    of a driven roller from t - h to t + h."""
     at = rotate(exp_rotation(scale(angle, three(body.turn))), three(body.hang))
     torque = dot(three(body.turn), cross(at, gravity))
     return torque - speeding(body, t, h)
@@ -85,7 +85,7 @@ def torque_of(body, angle, gravity, t, h):
 
 @njit(cache=True, error_model="numpy")
 def speeding(body, t, h):
-    """Torque that speeds a driven roller up, on average from t - h to t + h."""
+    """Torque that accelerates a driven roller, on average from t - h to t + h."""
     if body.swings != 2:
         return 0.0
     return body.press[AXIAL] * (prescribed(body, t + h) - prescribed(body, t - h)) / (2.0 * h)

@@ -1,11 +1,11 @@
 """Torques on a roller about its axis by its spin, its angle and the time: clutch, motor, limiter, bearing.
 
-A body record has a clutch (mechanics.driven), whose sense AXLE says that a row of the table of axles acts
-in its place; which one, is in its torque. Signs are those of a turn about the roller's axis.
+A body record has a clutch (mechanics.driven). If its sense is AXLE, a row of the table of axles acts in its
+place; the number of the row is in its torque. Signs are those of a rotation about the roller's axis.
 
-Every law is a torque T(e, w, t): w the spin, v the speed of the shaft that is prescribed or wanted, and e the
-integral of v - w, by how much the roller is behind. With e' = v - w this is one state for the integral of
-speed control, for the angle of load of a stepper, and for the slip of a limiter.
+Every law is a torque T(e, w, t): w is the spin, v the prescribed or desired speed of the shaft, and e the
+integral of v - w, the angle by which the roller lags. With e' = v - w this is one state for the integral of
+speed control, for the load angle of a stepper, and for the slip of a limiter.
 """
 
 from __future__ import annotations
@@ -22,7 +22,7 @@ from mdlgen.model.tables import Floats, Model
 from mdlgen.model.tables.axle import CONTROLLED, LIMITER, OPEN, STEPPER, AxlePart
 from mdlgen.program.kernel import njit
 
-AXLE = 2.0  # of a clutch's SENSE: a row of the table of axles
+AXLE = 2.0  # value of a clutch's SENSE: a row of the table of axles acts
 # Columns of a row: as in model.tables.axle.AxlePart, then points of its curve.
 KIND, NO_LOAD, KP, KI, LIMIT, CREEP, POLES, DAMPING, FRICTION, DRAG, EASE, POINTS, CURVE = range(13)
 WIDTH = CURVE + 2 * MOST_POINTS
@@ -31,9 +31,9 @@ SMALL = 1e-9  # of the argument of a smooth sign: below, its secant is its slope
 
 
 class Acting(NamedTuple):
-    """What acts at a spin: the torque; by what iterations take it to fall as the spin grows, at least its
-    slope; that slope without what follows from the angle; which part of it pulls to the speed of the shaft;
-    the power that a drive gives, and the power that is dissipated."""
+    """Action of an axle at a spin. In order: the torque; its decrease per spin that iterations use, at least
+    the slope; that slope without the part due to the angle; the part of it that pulls to the speed of the
+    shaft; the power of the drive; the dissipated power."""
 
     torque: float
     growth: float
@@ -68,8 +68,8 @@ def _row(axle: AxlePart, time: float, torque: float) -> Floats:
 
 @njit(cache=True, error_model="numpy")
 def of_curve(row, slow):
-    """Torque of a motor that runs so much slower than its no-load speed, and its slope. It is odd: faster
-    than that it brakes. Beyond its last point, driven backwards, it is continued."""
+    """Torque of a motor that runs by `slow` below its no-load speed, and its slope. The curve is odd: above
+    that speed the motor brakes. Beyond the last point, driven backwards, it is extrapolated."""
     size, last = abs(slow), CURVE + 2 * (int(row[POINTS]) - 1)
     at = CURVE
     while at + 2 < last and size > row[at + 2]:
@@ -81,8 +81,8 @@ def of_curve(row, slow):
 
 @njit(cache=True, error_model="numpy")
 def rubbing(torque, over, rate):
-    """Friction against a rate by a smooth sign, its secant over the rate, and its slope. By the secant an
-    iteration does not go back and forth between both signs."""
+    """Friction against a rate by a smooth sign, its secant over the rate, and its slope. With the secant,
+    iterations do not oscillate between both signs."""
     x = rate / over
     level = sign_step(x, 1.0)
     secant = 1.5 if abs(x) < SMALL else level / x
@@ -91,8 +91,8 @@ def rubbing(torque, over, rate):
 
 @njit(cache=True, error_model="numpy")
 def limits(row, spin):
-    """Least and greatest torque of a motor with speed control, by its line at full voltage either way and by
-    its current."""
+    """Least and greatest torque of a motor with speed control: from its lines at full voltage of both signs,
+    and from its current."""
     high, _ = of_curve(row, row[NO_LOAD] - spin)
     low, _ = of_curve(row, row[NO_LOAD] + spin)
     return max(-low, -row[LIMIT]), min(high, row[LIMIT])
@@ -100,7 +100,7 @@ def limits(row, spin):
 
 @njit(cache=True, error_model="numpy")
 def _motor(row, behind, rate, spin, shaft, h):
-    """Torque of a motor, its growth with and without the angle; rate: shaft less spin."""
+    """Torque of a motor, its growth with and without the angle; rate: speed of the shaft minus spin."""
     if row[KIND] == OPEN:
         torque, slope = of_curve(row, rate)
         return torque, max(slope, 0.0), max(slope, 0.0)
@@ -149,7 +149,7 @@ def _acting(axles, body, before, spin, t, h):
 
 @njit(cache=True, error_model="numpy", forceinline=True)
 def acting(axles, body, before, spin, t, h):
-    """What acts on a roller at a spin and a time, h after a state where it was `before` behind its shaft."""
+    """Action on a roller at a spin and a time, h after a state in which it lagged its shaft by `before`."""
     if body.clutch[SENSE] == AXLE:
         return _acting(axles, body, before, spin, t, h)
     torque, growth, shaft = clutch(body, spin, t)
@@ -158,8 +158,8 @@ def acting(axles, body, before, spin, t, h):
 
 @njit(cache=True, error_model="numpy")
 def behind_at_end(axles, body, before, middle, spin, t, dt):
-    """By how much a roller is behind its shaft after a step of dt from t, from its spin in the middle and at
-    the end. Where speed control asks for more than the limits of its motor, it is what asks for these."""
+    """Angle by which a roller lags its shaft after a step of dt from t, from its spin in the middle and at
+    the end. Where speed control exceeds the limits of its motor, it is the angle that yields these limits."""
     behind = before + turned(body, t + dt) - turned(body, t) - dt * middle
     row = axles[int(body.clutch[TORQUE])]
     if row[KIND] == CONTROLLED and row[KI] > 0.0:

@@ -1,9 +1,9 @@
-"""Friction that sticks, of a sheet or a roller on what is no sheet: one spring for each contact patch.
+"""Friction that sticks, of a sheet or a roller on another kind of body: one spring for each contact patch.
 
-A patch is everything that a sheet has in contact with one roller, or one body with another body. Along its
-faces a spring of stiffness k_t, the bristle, holds the two bodies, whatever boxes of the sheet are in the
-patch. Its stretch is a rigid field, of the first body against the second: z at the middle c of the patch, and
-a turn phi about its normal n,
+A patch is the whole contact of a sheet with one roller, or of one body with another body. Along its faces a
+spring of stiffness k_t, the bristle, holds the two bodies, for any boxes of the sheet in the patch. Its
+stretch is a rigid field, of the first body against the second: z at the middle c of the patch, and a rotation
+phi about its normal n,
 
     z(x) = z + phi n x (x - c).
 
@@ -14,8 +14,8 @@ middle
 
 As in mechanics.stick this is the return mapping of Coulomb friction, with the force at the end of the step.
 After the step the field changes by the rigid motion that fits the changes of all z_i best, with the weights
-N_i. The bristle stores k_t (z^2 + phi^2 sum(N_i |x_i - c|^2)/N)/2. No rigid field stores more than the z_i
-do, and the difference is dissipated.
+N_i. The bristle stores k_t (z^2 + phi^2 sum(N_i |x_i - c|^2)/N)/2. A rigid field never stores more than the
+z_i together, and the difference is dissipated.
 
 Rolling removes stretch: new material enters the patch without any, at V, the mean speed of both surfaces
 through the patch. A force F creeps over a patch of length 2a by Carter's curve (Johnson, Contact Mechanics,

@@ -52,7 +52,7 @@ def _kernels(name: str) -> Iterator[Kernel]:
 
 
 def _result(names: dict[str, Any], called: str, own: Any, given: Iterable[str]) -> str:
-    """The text of what a kind has: a value, or the call of a kernel, which is added to the names."""
+    """Source text for one kind: a value, or the call of a kernel, which is added to the names."""
     if not isinstance(own, Kernel):
         return repr(own)
     names[called] = own

@@ -1,5 +1,5 @@
-"""Contact between a box and a cylinder or a part of one, and two parallel cylinders; see nip.py for what a
-face has of a round, plate.py for a box and a plate, facing.py for two boxes."""
+"""Contact between a box and a cylinder or a part of one, and two parallel cylinders. See nip.py for the
+pressure of a round on a face, plate.py for a box and a plate, facing.py for two boxes."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ def box_cylinder(out, a, box, b, roller, law):
 def box_sector(out, a, box, b, roller, sector, law):
     """As box_cylinder for a Sector of the round.
 
-    Boxes share k by what of the sector each covers, so that a box over it has k z^1.5.
+    Boxes share k by the part of the sector that each covers, so that a box over all of it has k z^1.5.
     """
     half, exposed = box
     gap = sub(b.x, a.x)
@@ -123,8 +123,9 @@ def face_corner(corner, a, half, facing, b):
 
 @njit(cache=True, error_model="numpy", **BORROWS, **CALLED)
 def cylinder_cylinder(out, a, one, b, two, law):
-    """Two parallel Cylinders; k is shared by the part of the narrower one's width that they meet on. The
-    force stands in the middle of the overlap, or aside where a cover lets one run ahead (model.covers)."""
+    """Two parallel Cylinders; k is multiplied by the part of the narrower one's width on which they touch.
+    The force acts in the middle of the overlap, or is displaced from it by a cover that changes the speed of
+    a roller (model.covers)."""
     gap = sub(a.x, b.x)
     offset = dot(gap, two.axis)
     across = sub(gap, scale(offset, two.axis))

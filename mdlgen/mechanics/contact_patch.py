@@ -1,5 +1,5 @@
-"""The patch of a box's face under a round: where lines across its axis begin and end, how deep they lie, what
-they store, and where along the axis that has kinks. What presses there is in nip.py."""
+"""The patch of a box's face under a round: the ends, depths and energies of lines across its axis, and the
+places along the axis where these have kinks. The forces are in nip.py."""
 
 from __future__ import annotations
 
@@ -11,19 +11,20 @@ from mdlgen.program.kernel import njit
 
 GAUSS = 1.0 / math.sqrt(3.0)
 
-NONE = 2.0  # no place of a part, which goes from -1 to 1
-# An edge that goes by less than this share of the reach over a part is along the axis, and by more than the
-# other so oblique that three lines are needed: the square of the pressure along it is of the fourth degree.
+NONE = 2.0  # outside of any part, which goes from -1 to 1.
+# Displacement of an edge over a part, relative to the reach. Below the first value it counts as parallel to
+# the axis. Above the second one it is oblique and needs three lines: the squared pressure is of the fourth
+# degree.
 _ALONG, _OBLIQUE = 0.0025, 0.025
 
 
 class Seen(NamedTuple):
-    """A round as a face has it: its centre in box axes; its axis in the face, (up, ur) along p and r, of
-    length `flat` before that was made 1; how far it leans out of the face, and how far its centre is from it;
-    the slopes at which its sector begins and ends; its radius, and that of the round its pressure is of;
-    `aside` and `turns` as of a Sector; `flush`, whether the face is deepest where the round ends or at a
-    joint, and not at a free edge: then its depth grows with what moves square to it, else with what moves
-    square to the axis."""
+    """A round relative to a face. In order: its centre in box axes; its axis in the face, (up, ur) along p
+    and r, whose length was `flat` before normalisation; its inclination out of the face, and the distance of
+    its centre from it; the slopes at which its sector begins and ends; its radius, and that of the round that
+    defines the pressure; `aside` and `turns` as in a Sector; `flush`: true if the face is deepest where the
+    round ends or at a joint, and not at a free edge. Then the depth grows with motion perpendicular to the
+    face, else with motion perpendicular to the axis."""
 
     center: Vector
     up: float
@@ -41,7 +42,7 @@ class Seen(NamedTuple):
 
 
 class Span(NamedTuple):
-    """Of a line of the face across the axis: where it begins and ends, and whether these are free edges."""
+    """Beginning and end of a line of the face across the axis; true for each that is a free edge."""
 
     first: float
     last: float
@@ -50,10 +51,10 @@ class Span(NamedTuple):
 
 
 class Lie(NamedTuple):
-    """How a line of the face lies under the round: its distance from the axis; the place nearest to the
-    contact line; whether the pressure is spread over it; the radius of the round that the pressure is of, the
-    distance from its axis, and how far it reaches; where the pressure begins and ends; the greatest depth,
-    0: none; and how far what lies beyond a free edge is drawn in, 1: not."""
+    """A line of the face under the round. In order: its distance from the axis; the place nearest to the
+    contact line; true if the pressure is spread over it; the radius of the round that defines the pressure,
+    the distance from its axis, and its reach; beginning and end of the pressure; the greatest depth, 0: none;
+    the factor by which pressure beyond a free edge is drawn in, 1: not."""
 
     e: float
     nearest: float
@@ -76,7 +77,7 @@ def _stored(t, reach):
 
 @njit(cache=True, error_model="numpy", forceinline=True)
 def at_ends(left, right, reach):
-    """The difference of what `_stored` adds up at both ends, 0 beyond the reach."""
+    """Difference of the squared pressure at both ends, 0 beyond the reach."""
     return (1.0 - (right / reach) ** 2) ** 2 - (1.0 - (left / reach) ** 2) ** 2
 
 
@@ -111,7 +112,7 @@ def span_of(seen, face, half, u):
 
 @njit(cache=True, error_model="numpy", forceinline=True)
 def free_at(face, up, ur, high):
-    """Whether the edge of the face that ends it along the axis, at the high end or the low one, is free."""
+    """True if the edge at which the face ends along the axis, at the high end or the low one, is free."""
     on = ur if abs(ur) >= abs(up) else up
     bit = 1 if (on > 0.0) != high else 2
     _, _, _, _, free = face
@@ -142,7 +143,7 @@ def lie_of(seen, face, half, shared, u):
     reach = math.sqrt(of * of - off * off)
     left = -reach if open_first else max(first, -reach)
     right = reach if open_last else min(last, reach)
-    # what lies beyond a free edge draws in to the contact line as the edge comes to it
+    # pressure beyond a free edge is drawn in to the contact line as the edge approaches it
     draw = 1.0
     if spread and open_first:
         draw = min(draw, -first / reach)
@@ -153,20 +154,20 @@ def lie_of(seen, face, half, shared, u):
 
 @njit(cache=True, error_model="numpy", forceinline=True)
 def foundation(seen):
-    """Stiffness of the foundation, of 1 for the whole nip."""
+    """Stiffness of the foundation for a stiffness of 1 of the whole nip."""
     return 3.0 / (4.0 * math.sqrt(2.0 * seen.wide))
 
 
 @njit(cache=True, error_model="numpy", forceinline=True)
 def scale_of_energy(seen, lie):
-    """What `_stored` and `at_ends` are times; the round is z/(4R) narrower than its parabola."""
+    """Factor of `_stored` and `at_ends`; the round is z/(4R) narrower than its parabola."""
     z = seen.radius - lie.e
     return 0.5 * foundation(seen) * (1.0 + 0.25 * z / lie.of) * z * z
 
 
 @njit(cache=True, error_model="numpy", forceinline=True)
 def energy_of(seen, lie):
-    """Energy that a line stores, of a stiffness of 1."""
+    """Energy that a line stores, for a stiffness of 1."""
     if lie.spread:
         whole = _stored(lie.right, lie.reach) - _stored(lie.left, lie.reach)
         return scale_of_energy(seen, lie) * whole
@@ -175,15 +176,15 @@ def energy_of(seen, lie):
 
 @njit(cache=True, error_model="numpy", forceinline=True)
 def straight_edges(seen, deep, long):
-    """Whether all edges of the face go along the axis, or square to it, over a length, in a nip that is
-    `deep` at its middle."""
+    """True if all edges of the face are parallel or perpendicular to the axis, over a length, in a nip that
+    is `deep` at its middle."""
     goes = long * min(abs(seen.up), abs(seen.ur)) / max(abs(seen.up), abs(seen.ur))
     return goes * goes <= 8.0 * _ALONG * _ALONG * seen.wide * deep
 
 
 @njit(cache=True, error_model="numpy", forceinline=True)
 def _crossings(m, s, rm, rs):
-    """Where a place m + s v crosses the bounds of a nip, whose reach squared is rm + rs v."""
+    """Values v at which a place m + s v crosses the bounds of a nip, whose reach squared is rm + rs v."""
     a, b, c = s * s, 2.0 * m * s - rs, m * m - rm
     under = b * b - 4.0 * a * c
     if under < 0.0:
@@ -194,9 +195,9 @@ def _crossings(m, s, rm, rs):
 
 @njit(cache=True, error_model="numpy")
 def cuts_of(seen, face, half, middle, long):
-    """Places where the pressure on a part of the face has a kink, in times half its length `long` from its
-    middle along the axis; and whether an edge lies so oblique in the nip that three lines a piece are
-    needed."""
+    """Places where the pressure on a part of the face has a kink, measured from its middle along the axis and
+    relative to half its length `long`. Also returns True if an edge is so oblique in the nip that each piece
+    needs three lines."""
     down, on = middle - GAUSS * long, middle + GAUSS * long
     one, two = span_of(seen, face, half, down), span_of(seen, face, half, on)
     # the square of the reach is nearly linear along the axis

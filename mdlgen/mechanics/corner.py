@@ -1,12 +1,13 @@
-"""Poisson's effect of a plate: what couples the bushings around a corner where four boxes meet.
+"""Poisson's effect of a plate: the coupling of the bushings around a corner where four boxes meet.
 
-Up to two bushings along x and two along y lie around a corner, each for a quarter of the boxes there. With
-their turns a about y and b about x, and their elongations d along x and e along y, the corner stores
+Up to two bushings along x and two along y lie around a corner, each for a quarter of the boxes there. Let a,
+b be their rotations about y and x, and d, e their elongations along x and y. The corner then stores
 
-    U = sum over both i along x, both j along y of  bend_ij a_i b_j + stretch_ij d_i e_j
+    U = sum over i, j: bend_ij a_i b_j + stretch_ij d_i e_j
 
-on top of what the bushings store by themselves. Turns and elongations are those of `bushing`, in its middle
-frame, and so are forces and torques: U does not change when all is moved or turned, and momentum is kept.
+in addition to the energies of the bushings; i counts those along x, j those along y. Rotations and
+elongations are those of `bushing`, in its middle frame, and so are forces and torques. U does not change
+under a rigid motion of all bodies, and momentum is conserved.
 """
 
 from __future__ import annotations
@@ -44,14 +45,14 @@ CORNER = np.dtype(
         ("bend_damping", "f8", 4),
         ("stretch_damping", "f8", 4),
         ("sheet", "i8"),
-        ("run", "i8"),  # of a solver's joints that follow each other
+        ("run", "i8"),  # number of the run of consecutive joints in a solver
     ]
 )
 
 
 @njit(cache=True, error_model="numpy", **BORROWS)
 def axes_of(m, along_x):
-    """Axis about which a bushing along x, or along y, bends, and the one that it stretches along, in m."""
+    """Axis about which a bushing along x, or along y, bends, and the one along which it stretches, in m."""
     one, two = (m[0], m[3], m[6]), (m[1], m[4], m[7])
     return (two, one) if along_x else (one, two)
 
@@ -88,8 +89,8 @@ def measured(joint, motion, along_x):
 
 @njit(cache=True, error_model="numpy", **BORROWS)
 def pushed(joint, x, r, along_x, moment, brake, pull, f):
-    """Adds to f (bodies, 6) what a joint does that has these on top: `moment` from its springs and `brake`
-    from its dampers about its axis of bending, `pull` along its elongation."""
+    """Adds to f (bodies, 6) the forces of a joint due to these: `moment` of springs and `brake` of dampers
+    about its axis of bending, `pull` along its elongation."""
     middle, theta, gap, ra, rb = standing(joint, x, r)
     about, along = axes_of(middle, along_x)
     twist = (0.0, moment, 0.0) if along_x else (moment, 0.0, 0.0)
@@ -115,7 +116,7 @@ def pushed(joint, x, r, along_x, moment, brake, pull, f):
 
 @njit(cache=True, error_model="numpy", **BORROWS, **FUSED)
 def corner_forces(joints, corner, motion, f):
-    """Adds to f (bodies, 6; the last row is the ground) what a corner does. Returns (stored energy,
+    """Adds the forces of a corner to f (bodies, 6; the last row is the ground). Returns (stored energy,
     dissipated power)."""
     around = corner.joint
     none = (0.0, 0.0, 0.0, 0.0)
@@ -143,7 +144,7 @@ def corner_forces(joints, corner, motion, f):
 
 @njit(cache=True, error_model="numpy", **BORROWS)
 def bodies_of(joints, corner, there):
-    """Bodies that a corner acts on, but for the ground, into `there` (4,). Returns how many they are."""
+    """Lists the bodies on which a corner acts, except the ground, in `there` (4,). Returns their number."""
     many = 0
     for row in corner.joint:
         if row < 0:

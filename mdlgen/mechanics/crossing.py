@@ -1,9 +1,9 @@
-"""What a pair may cross: how deep its law holds, and how far it may move unseen.
+"""Detection of pairs that cross each other: the depth up to which a law holds, and the motion between checks.
 
 A law of contact acts in a band behind a face: as thick as a plate, as deep as a roller's radius. Beyond it
 there is no force, so a body that is fast or thin may be before the band at one state and behind it at the
-next. States that are not further apart than `unseen` cannot miss the part of the band that is deeper than
-`deepest`, where a run ends. What each kind of pair has of that is in mechanics.pairs.
+next. States that are no further apart than `unseen` cannot miss the part of the band that is deeper than
+`deepest`, where a run ends. The functions for each kind of pair are in mechanics.pairs.
 """
 
 from __future__ import annotations
@@ -20,7 +20,7 @@ _solid = by_kind(__name__, "SOLID", otherwise=False, inline=True)
 
 @njit(cache=True, error_model="numpy", **BORROWS)
 def _most(bodies, pair, shapes):
-    """A little less than the band beyond `deepest` is wide: for most laws as wide as that is deep."""
+    """A little less than the width of the band beyond `deepest`, which for most laws equals `deepest`."""
     return UNSEEN * deepest(bodies, pair)
 
 
@@ -29,5 +29,5 @@ unseen = by_kind(__name__, "unseen", otherwise=_most)
 
 @njit(cache=True, error_model="numpy", forceinline=True)
 def solid(bodies, pair):
-    """Whether a pair is of a box with a free side and a solid that it may be `buried` in."""
+    """True if a pair has a box with a free side and a solid in which it may be `buried`."""
     return _solid(pair) and bodies[pair.a].exposed != 0

@@ -31,9 +31,9 @@ from mdlgen.program.kernel import njit
 
 POINT = np.dtype([("strain", "f8"), ("stress", "f8"), ("slope", "f8"), ("energy", "f8")])
 FOLLOWS = [
-    ("first", "i8"),  # of its points, -1: a linear spring
+    ("first", "i8"),  # first of its points, -1: a linear spring
     ("last", "i8"),
-    ("row", "i8"),  # of the Model's bushings
+    ("row", "i8"),  # row of the Model's bushings
     ("way", "i8"),
     ("length", "f8"),
     ("area", "f8"),
@@ -101,7 +101,7 @@ def curve_spring(points, joint, elongation):
 
 @njit(cache=True, error_model="numpy")
 def curve_excess(points, joint, middle, gap, ra, rb):
-    """What a curve adds to the bushing with the linear spring k along its axis, which `bushing` has.
+    """Excess force of a bushing with a curve over one that has the linear spring k along its axis.
 
     Args: middle frame and gap of the bushing, and both arms (global), as in `bushing`. Returns (force on b,
     torque on b, torque on a, stored energy).
@@ -126,7 +126,7 @@ def middle_and_gap(xa, fa, ra, xb, fb, rb):
 
 @njit(cache=True, error_model="numpy")
 def overstretched(points, joints, x, r):
-    """(joint, strain) that is furthest beyond the last point of a curve that refuses that; joint -1: none.
+    """(joint, strain) furthest beyond the last point of a curve that may not be exceeded; joint -1: none.
 
     x, r: centres and rotations of the bodies; the last one is the ground.
     """
@@ -142,7 +142,7 @@ def overstretched(points, joints, x, r):
         middle, gap = middle_and_gap(vec(x, a), fa, ra, vec(x, b), fb, rb)
         own = back(middle, gap)
         now = (own[0] if joint.way == 0 else own[1]) / joint.length
-        # round-off of a joint that stands at the last point is not beyond it
+        # round-off of a joint at the last point does not count as beyond it
         more = abs(now) / points[joint.last].strain - 1.0
         if more > 1e-9 and not more <= most:
             worst, most, strain = j, more, now

@@ -1,7 +1,8 @@
 """The speed of a driven roller over time, and a clutch that lets a roller turn freely in one sense.
 
-A body record has `corners`, how many its law has; `drive`, time and speed of each in turn; `clutch`, the
-sense that is free (1 or -1 about the axis, 0: there is none), a torque, and the speed at which it acts.
+A body record has `corners`, the number of corners of its law; `drive`, time and speed of each in turn;
+`clutch`, the free sense of rotation (1 or -1 about the axis, 0: no clutch), a torque, and the speed at which
+it acts.
 """
 
 from __future__ import annotations
@@ -14,14 +15,14 @@ from mdlgen.model.limits import MOST_CORNERS
 from mdlgen.model.tables import RollerPart
 from mdlgen.program.kernel import njit
 
-# Of a record's `clutch`.
+# Columns of a record's `clutch`.
 SENSE, TORQUE, CREEP = 0, 1, 2
 CLUTCH = [("clutch", "f8", 3)]
 DRIVE = [("corners", "i8"), ("drive", "f8", 2 * MOST_CORNERS)]
 
 
 class Clutch(NamedTuple):
-    """What a clutch does: the torque on the roller, what that loses as the spin grows, the shaft's speed."""
+    """Action of a clutch: the torque on the roller, its decrease per spin, the shaft's speed."""
 
     torque: float
     growth: float
@@ -32,7 +33,7 @@ def drive(row: np.void, roller: RollerPart, time: float = 1.0, torque: float = 1
     """Fills the fields of DRIVE and CLUTCH of a body record for a roller; `time` is a millisecond in the
     solver's units, `torque` a newton millimetre."""
     if roller.leader >= 0:
-        return  # it turns with the one that leads
+        return  # it turns with its leader
     corners = roller.corners * (time, 1.0 / time)
     if not len(corners) and roller.axle is not None:
         corners = np.zeros((1, 2))  # the shaft of a limiter that ground holds

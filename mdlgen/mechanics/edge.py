@@ -13,14 +13,14 @@ normal to that of the face at the depth h, cos a = 1 - h/r,
     w = u - r (1 - sin a)        how far the side is in, along the plate; r is 0 between the rounds
     E = 2/5 k w^2.5              so the force has the direction of the round's normal at that height,
 
-whatever the penetration. Pushed along the plate, a corner so climbs where tan a < 1/mu, which is a depth of
-r (1 - cos(90 deg - atan mu)), and stands below it. Where w is more than h/(1 - h/r), a corner on the round is
-over its top and is pushed up. Of the two corners of a side at one place along it the deeper one counts
+at any penetration. So a corner that is pushed along the plate climbs where tan a < 1/mu, which is a depth of
+r (1 - cos(90 deg - atan mu)), and is stopped below it. Where w is more than h/(1 - h/r), a corner on the
+round is over its top and is pushed up. A side has two corners at one place along it; the deeper one counts
 (Holder's mean of power NORM).
 
-A corner 0.05 mm in and 0.05 mm below a face may have come from above or from the end; that depends on the way
-it took. So a pair remembers which outer sides of its box stand before which end (`beside`), from when they
-were clear of the plate: three bits for each side, 0 or 1 + the number of the end.
+A corner 0.05 mm in and 0.05 mm below a face may have come from above or from the end; that depends on its
+path. So a pair stores the ends before which outer sides of its box stand, since they were last clear of the
+plate: three bits of its field for each side, 0 or 1 + the number of the end.
 """
 
 from __future__ import annotations
@@ -63,7 +63,7 @@ class End(NamedTuple):
 
 @njit(cache=True, error_model="numpy", forceinline=True)
 def leaning(sine):
-    """How much of the law of the edge acts at a slope of the box, 0 to 1."""
+    """Part of the law of the edge that acts at a slope of the box, 0 to 1."""
     s = min(max((sine - LEVEL) / (LEANING - LEVEL), 0.0), 1.0)
     return s * s * (3.0 - 2.0 * s)
 
@@ -77,9 +77,9 @@ def leaning_growth(sine):
 
 @njit(cache=True, error_model="numpy", forceinline=True)
 def hands_over(a, exposed, inside, way):
-    """Within how many radii of the end of a plate the corners of a face begin to hand over to its edge. The
-    middle of box a is so far `inside` of the end, `way` looks out of it. An outer side ahead has 1: the edge
-    takes it by how far it is on the round (`_passes`). Else it is 2: on the round the edge has it alone.
+    """Distance from the end of a plate, in radii, at which the law begins to pass from the corners of a face
+    to its edge. `inside`: distance of the middle of box a inside of the end; `way` points out of it. An outer
+    side ahead has 1: its edge law grows with its place on the round (`_passes`). Other sides have 2.
     """
     if inside <= 0.0:
         return 2.0
@@ -134,7 +134,7 @@ def end_of(i, b, plate):
 
 @njit(cache=True, error_model="numpy", forceinline=True)
 def rounded(u, h, thick, edge):
-    """Depth of a point that stands against an end, and its growth with u and h; 0 where it is clear."""
+    """Depth of a point in an end of a plate, and its growth with u and h; 0 where it does not touch."""
     if u <= 0.0 or h <= 0.0 or h >= thick:
         return 0.0, 0.0, 0.0
     low, sign, radius = (h, 1.0, edge[UPPER]) if h <= 0.5 * thick else (thick - h, -1.0, edge[LOWER])
@@ -210,8 +210,8 @@ def stub(out, a, half, p, sign, end, plate, b, law):
 
 @njit(cache=True, error_model="numpy", forceinline=True)
 def _passes(left, inner, half, radius):
-    """How much of the edge a box has that it meets so far inside of a side: all but near it, where the next
-    box takes over (`inner`), or where a free side ahead comes to the round."""
+    """Part of the edge's law that acts on a box whose side is at the distance `left` from it: 1 except near
+    that side, where the next box takes over (`inner`), or where a free side ahead comes to the round."""
     if inner:
         return min(max(0.5 + left / (4.0 * SHARED * half), 0.0), 1.0)
     return min(max(left / max(radius, 1e-3 * half), 0.0), 1.0)
@@ -219,10 +219,10 @@ def _passes(left, inner, half, radius):
 
 @njit(cache=True, error_model="numpy", forceinline=True)
 def into_corner(face, side, thick):
-    """How deep a point is in the end of a layer, and the growth of that with both: it is `face` inside of the
-    one face of it, which is `thick`, and `side` inside of its end. Outside of both it is below zero by the
-    distance from the corner; inside it is what is less, and passes from one to the other without a jump
-    (Holder's mean of power -NORM)."""
+    """Depth of a point in the end of a layer of thickness `thick`, and its growth with both arguments. `face`
+    and `side`: distances inside of one of its faces, and inside of its end. Outside of both the depth is
+    minus the distance from the corner. Inside it is the lesser of both, with a smooth transition (Holder's
+    mean of power -NORM)."""
     if side <= 0.0 and (face <= 0.0 or face > thick):
         beyond = face if face <= 0.0 else face - thick
         far = math.sqrt(beyond * beyond + side * side)
@@ -269,7 +269,7 @@ def _pressed(out, a, box, face, edge, end, b, law, grip):
         high = i == 2 or exposed & (2 << (2 * i)) != 0
         more = 0.0 if side == 0 else 2.0 * SHARED * half[i]
         least, most = -half[i] - (0.0 if low else more), half[i] + (0.0 if high else more)
-        if side == 1:  # what is behind is on the round as far as that goes
+        if side == 1:  # the part behind is on the round up to its end
             least -= radius if low_behind else 0.0
             most += radius if high_behind else 0.0
         if abs(way[i]) < 1e-12:
@@ -354,14 +354,14 @@ def line(out, a, box, end, plate, b, law):
 
 @njit(cache=True, error_model="numpy", forceinline=True)
 def deepest_at(thick, half, beside):
-    """How deep a box (half lengths) may be in a plate of this half thickness. A box may be as deep as that. A
-    side that stands before an end may be further in, by half of the box: behind it comes the next box."""
+    """Greatest depth of a box (half lengths) in a plate of this half thickness, which it equals. A side that
+    stands before an end may be further in, by half of the box, since the next box follows behind it."""
     return thick if beside == 0 else max(thick, min(half[0], half[1]))
 
 
 @njit(cache=True, error_model="numpy")
 def stands(a, box, b, plate):
-    """Which outer sides of box a stand before which end of plate b, with what was known (see the module)."""
+    """Ends of plate b before which outer sides of box a stand, given the stored ones (see the module)."""
     half, exposed = box
     ends, edge, beside = plate.ends, plate.edge, plate.beside
     thick = 2.0 * plate.half[2]

@@ -2,17 +2,17 @@
 
 The face with the least overlap along its own normal owns the contact; a side only where it overlaps less
 than the sheets' faces do over the area that they share, since tilted faces seem deep beyond their outlines.
-The face of the other box that looks at it is cut to the owner's outline; each corner of what is left has a
-depth along the owner's normal, and stands for its part of the area: half of the two triangles beside it that
-the polygon has about its centroid. k is the stiffness of one pair whose smaller face lies wholly on the
-other, so a corner with the area A_i pushes with
+The face of the other box that looks at it is cut to the owner's outline. Each corner of the resulting polygon
+has a depth along the owner's normal, and represents a part of the area: half of the two triangles that its
+edges form with the centroid. k is the stiffness of one pair whose smaller face lies wholly on the other, so a
+corner with the area A_i pushes with
 
     F_i = k A_i / A z^1.5    (Eq. 10), A the area of the smaller face.
 
-Two flat sheets that lie on each other so push with the same force however their grids stand to each other:
-the parts of one box that lie on several sum up to the box. `share: pair` gives every pair the full k on
-whatever it covers, as MotionSolve does. Both bodies get the force at one point, so linear and angular
-momentum are kept exactly. Sides of a box that a neighbour in its sheet covers own no contact.
+So two flat sheets that lie on each other push with the same force at any offset of their grids: the parts of
+one box that lie on several boxes add up to the box. `share: pair` gives every pair the full k on any part
+that it covers, as MotionSolve does. Both bodies get the force at one point, so linear and angular momentum
+are conserved exactly. Sides of a box that a neighbour in its sheet covers own no contact.
 """
 
 from __future__ import annotations
@@ -35,7 +35,7 @@ GRAZE = 1e-9
 
 @njit(cache=True, error_model="numpy")
 def _parting(ra, half_a, exposed, rb, half_b, gap):
-    """How far apart two boxes are along the normals of the first: (whether one of them parts them, distance
+    """Distance of two boxes along the normals of the first: (true if one of them separates them, distance
     along its faces' normal, its sign, greatest distance along a free side, its axis, its sign); overlap is
     negative, and a box without a free side has -1e300."""
     place, turn = back(ra, gap), transpose_matmul(ra, rb)
@@ -74,7 +74,8 @@ def overlay(points, owner, half, q, sign, other, wide):
 
 @njit(cache=True, error_model="numpy")
 def shares(points, count, p, r, weights):
-    """Area that each corner of a polygon stands for, into `weights`; returns the whole. p, r: its axes."""
+    """Writes the area that each corner of a polygon represents into `weights`; returns the sum. p, r: its
+    axes."""
     area = cp = cr = 0.0
     for i in range(1, count - 1):
         ap, ar = points[i, p] - points[0, p], points[i, r] - points[0, r]

@@ -4,17 +4,17 @@ With the gap h [mm] between the faces, the pressure p [N/mm^2] over that of the 
 
     div(h^3/(12 mu) grad p) = -q,    p = 0 at free edges    (Reynolds 1886; Hamrock, Fluid Film Lubrication)
 
-where q [mm/ms] is how fast the faces close, along the normal halfway between both: so what sliding does in a
-wedge is in it. The air does not give way to pressure, has no inertia, and shears the faces by no more than
-its pressure does; mu is its viscosity [N ms/mm^2]. An infinite strip of width L so has the force
-mu L^3 V/h^3 for each mm of it, a square 0.4217 mu L^4 V/h^3.
+where q [mm/ms] is the closing rate of the faces, along the normal halfway between both: so it includes the
+effect of sliding in a wedge. The air is incompressible, has no inertia, and shears the faces by no more than
+its pressure does; mu is its viscosity [N ms/mm^2]. So an infinite strip of width L has the force mu L^3 V/h^3
+for each mm of it, a square 0.4217 mu L^4 V/h^3.
 
-Pressures stand in the middles of cells, straight between two of them: linear finite elements, lumped. An
-edge of the air is where it is, also between two middles, so nothing jumps as sheets slide over each other.
-The area of a cell beside an edge has what straight pressures miss of a whole strip: its force is exact then
-for any number of cells, and that of a square within 0.6 %. The matrix A of the equation is symmetric and
-positive: what closes with a_i q_i, a_i the area of a cell, is pushed back by a_i p_i, A p = a q, and loses
-power in any case.
+Pressures are defined in the middles of cells, and are linear between two of them: linear finite elements,
+lumped. An edge of the air may lie between two middles, so nothing jumps as sheets slide over each other. The
+area of a cell at an edge is corrected for the error of linear pressures in a whole strip. Then the force of a
+strip is exact for any number of cells, and that of a square within 0.6 %. The matrix A of the equation is
+symmetric and positive: cells that close with a_i q_i, a_i the area of a cell, are pushed back by a_i p_i,
+A p = a q, which always dissipates power.
 
 Faces have a roughness e: air flows as through h = e + gap, and where they press into each other as through e.
 There they do not close, and have no pressure from it.
@@ -40,8 +40,8 @@ FILM = np.dtype(
         ("cell", "i8"),  # first cell; those of a row stand together, the shorter way of the sheet
         ("cells", "i8"),
         ("width", "i8"),  # cells of a row
-        ("across", "i8"),  # whether rows go along y
-        ("acts", "i8"),  # whether any of its cells can close
+        ("across", "i8"),  # 1 where rows go along y
+        ("acts", "i8"),  # 1 where any of its cells can close
         ("viscosity", "f8"),  # [N ms/mm^2]
         ("roughness", "f8"),  # [mm]
         ("wide", "f8"),  # gaps that are wider count as open: the air there is not lubrication any more [mm]
@@ -49,33 +49,33 @@ FILM = np.dtype(
 )
 CELL = np.dtype(
     [
-        ("pair", "i8"),  # that it is of, -1: no face is near
-        ("following", "i8"),  # the next cell of that pair, -1: none
-        ("inside", "i8"),  # whether the other face is over its middle
-        ("point", "i8"),  # where it stands among the points of an iteration, -1: nowhere
-        ("gap", "f8"),  # [mm], negative where the faces press into each other
-        ("beyond", "f8"),  # how far its middle is outside the other box [mm]
-        ("size", "f8", 2),  # [mm]
-        ("edge", "f8", 4),  # from its middle to the free edge of the other sheet, see SIDES [mm]
-        ("at", "f8", 3),  # the place halfway between both faces
-        ("normal", "f8", 3),  # the way that pressure pushes the first body
-        ("reach", "f8", 2),  # what it is as wide as [mm]
-        ("area", "f8"),  # [mm^2], 0: nothing closes here
-        ("pressure", "f8"),  # [N/mm^2]
-        ("rate", "f8"),  # how fast the faces close [mm/ms]
+        ("pair", "i8"),  # pair of the cell, -1: no face is near.
+        ("following", "i8"),  # next cell of that pair, -1: none.
+        ("inside", "i8"),  # 1 where the other face is over its middle.
+        ("point", "i8"),  # its number among the points of an iteration, -1: none.
+        ("gap", "f8"),  # [mm], negative where the faces press into each other.
+        ("beyond", "f8"),  # distance of its middle outside the other box [mm].
+        ("size", "f8", 2),  # [mm].
+        ("edge", "f8", 4),  # distance from its middle to the free edge of the other sheet, see SIDES [mm].
+        ("at", "f8", 3),  # place halfway between both faces.
+        ("normal", "f8", 3),  # direction in which pressure pushes the first body.
+        ("reach", "f8", 2),  # effective width [mm].
+        ("area", "f8"),  # [mm^2], 0: the gap does not close here.
+        ("pressure", "f8"),  # [N/mm^2].
+        ("rate", "f8"),  # closing rate of the faces [mm/ms].
     ]
 )
-# Of CELL.edge: the ways that lead along x and y of the sheet, up and down.
+# Columns of CELL.edge: directions along x and y of the sheet, up and down.
 SIDES = 4
 X_UP, X_DOWN, Y_UP, Y_DOWN = 0, 1, 2, 3
-NEVER = 1e9  # mm: there is no edge that way
+NEVER = 1e9  # mm: no edge in this direction
 # An edge is at least this part of a cell away from its middle.
 NEAREST = 1e-3
 
 
 @njit(cache=True, error_model="numpy", **BORROWS)
 def neighbour(film, cell, side):
-    """Number of the cell beside one of a film, both counted from its first one; -1: there is none."""
+    """Number of the neighbour of a cell, both counted from the first one of the film; -1: there is none."""
     along = (side in (X_UP, X_DOWN)) == (film.across == 0)
     step = 1 if along else film.width
     place, many = (cell % film.width, film.width) if along else (cell // film.width, film.cells // film.width)
@@ -86,7 +86,7 @@ def neighbour(film, cell, side):
 
 @njit(cache=True, error_model="numpy", **BORROWS)
 def _span(film, cells, cell, side):
-    """(the neighbour of a cell that has air, or -1; how far it is, or the edge where air ends [mm])."""
+    """(neighbour of a cell, if it has air, or -1; distance of it, or of the edge where air ends [mm])."""
     own, axis = cells[film.cell + cell], side // 2
     other = neighbour(film, cell, side)
     if other < 0:
@@ -104,8 +104,8 @@ def _span(film, cells, cell, side):
 
 @njit(cache=True, error_model="numpy", **BORROWS)
 def assemble(film, cells, band):
-    """The matrix of a film, (cells, width + 1) from its diagonal on [mm^5/(N ms)], and the areas of its
-    cells; film.acts says whether it has any air that a closing gap presses on."""
+    """Computes the matrix of a film, (cells, width + 1) from its diagonal on [mm^5/(N ms)], and the areas of
+    its cells; sets film.acts to 1 if any of its cells can close."""
     film.acts = 0
     for i in range(film.cells):
         own = cells[film.cell + i]
@@ -117,7 +117,7 @@ def assemble(film, cells, band):
             continue
         for side in range(SIDES):
             other, way = _span(film, cells, i, side)
-            # less than a whole cell, and what straight pressures miss in all of a strip
+            # less than a whole cell, corrected for the error of linear pressures in a whole strip
             part = 0.0 if other >= 0 else way / own.size[side // 2]
             own.reach[side // 2] += 0.5 * way + part * max(1.0 - part, 0.0) / 3.0 * own.size[side // 2]
         if own.gap > 0.0:

@@ -17,7 +17,7 @@ LEAST = 0.5
 
 @njit(cache=True, error_model="numpy", **BORROWS)
 def clear(film, cells, head):
-    """No cell has air yet; `head`: the first cell of each pair."""
+    """Removes the air of all cells; `head`: the first cell of each pair."""
     for i in range(film.cells):
         own = cells[film.cell + i]
         if own.pair >= 0:
@@ -28,7 +28,8 @@ def clear(film, cells, head):
 
 @njit(cache=True, error_model="numpy", forceinline=True)
 def _outside(place, half, exposed):
-    """How far a place along a box's face is beyond its free sides, and beyond the others; negative inside."""
+    """Distance of a place along a box's face beyond its free sides, and beyond the others; negative
+    inside."""
     free = joined = -NEVER
     for q in range(2):
         for up in range(2):
@@ -42,8 +43,8 @@ def _outside(place, half, exposed):
 
 @njit(cache=True, error_model="numpy", forceinline=True)
 def _to_edge(place, half, exposed, way, inside):
-    """How far a place along a box's face is from its free sides that way: where that leaves it, if it is
-    inside, or where it enters."""
+    """Distance of a place along a box's face from its free sides in one direction: to where it leaves the
+    face, if it is inside, else to where it enters."""
     found = NEVER if inside else 0.0
     for q in range(2):
         for up in range(2):
@@ -71,7 +72,7 @@ def _normals(a, b, plane):
 
 @njit(cache=True, error_model="numpy", **BORROWS)
 def cover(film, cells, pair, box, frames, shapes, h):
-    """Gives the cells of one box what they have of another body, if it is the nearest so far. pair: its
+    """Sets the gaps of the cells of one box to another body, if it is the nearest so far. pair: its
     number and whether it is a plane; box: number of the box in its sheet; frames: of the box and of the other
     body; shapes: half lengths of both [mm], and the free sides of the second as a bit mask; h: how long ago
     the step began [ms]."""
@@ -108,7 +109,7 @@ def cover(film, cells, pair, box, frames, shapes, h):
         if beyond >= own.beyond:
             continue
         v = sub(add(a.v, cross(a.w, sub(at, a.x))), add(b.v, cross(b.w, sub(at, b.x))))
-        # what the guess has gone through in half a step is air that may stop it
+        # air through which the guess has moved in half a step may stop it
         own.beyond, own.pair, own.gap = beyond, number, max(gap, LEAST * (gap + h * dot(v, way)))
         inside = free <= 0.0 and joined <= SLIT * min(wide[0], wide[1])
         own.inside = 1 if inside else 0

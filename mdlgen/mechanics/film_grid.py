@@ -11,29 +11,30 @@ from mdlgen.mechanics.film import CELL, FILM
 from mdlgen.mechanics.pack import OWN, Units
 from mdlgen.model.tables import BOX_BOX, Ints, Model, SheetPart
 
-# Cells that a film has across a sheet at least: boxes of coarser grids have several.
+# Least number of cells of a film across a sheet: boxes of coarser grids have several.
 FEWEST = 8
 # Gaps that are wider [mm] count as open.
 WIDE = 2.0
 
 
 class Grids(NamedTuple):
-    """What a Model has of air."""
+    """Records of the air films of a Model."""
 
     films: np.ndarray  # mechanics.film.FILM, one for each contact with air
-    film_of: Ints  # of each contact, -1: none
+    film_of: Ints  # film of each contact, -1: none
     cells: np.ndarray  # mechanics.film.CELL, of all films, blank
-    widest: int  # most cells that a row of them has
+    widest: int  # greatest number of cells of a row
 
 
 def _finer(one: SheetPart, two: SheetPart) -> bool:
-    """Whether the second of two sheets has the smaller boxes; of the same size the first one carries."""
+    """True if the second of two sheets has the smaller boxes; for the same size the first one carries the
+    air."""
     areas = [s.size[0] * s.size[1] / s.count for s in (one, two)]
     return areas[1] < (1.0 - 1e-9) * areas[0]
 
 
 def film_grids(model: Model, units: Units = OWN) -> Grids:
-    """The finer of two sheets carries the air between them."""
+    """Records of the films of a Model; the finer of two sheets carries the air between them."""
     table = model.contacts
     rows = np.flatnonzero(table.air_viscosity > 0.0)
     sheets = {s.name: s for s in model.sheets}

@@ -1,7 +1,8 @@
-"""The air of all pairs of a solver: gaps as its bodies stand, and how fast the faces of cells close.
+"""The air of all pairs of a solver: gaps at the places of its bodies, and closing rates of the faces of
+cells.
 
-`film` has what film_grid makes (films, cells), the matrices `flow` (cells, band), and `head`, `listed` and
-`many`: the first cell of each pair, the pairs that have any, and how many these are.
+`film` has the records of film_grid (films, cells), the matrices `flow` (cells, band), and `head`, `listed`
+and `many`: the first cell of each pair, the pairs that have any, and their number.
 """
 
 from __future__ import annotations
@@ -18,13 +19,13 @@ BLOCK = 15  # all four sides of a plane are free
 
 @njit(cache=True, error_model="numpy", **BORROWS)
 def may_have_air(pair):
-    """Whether a pair is of a kind that air may stand between."""
+    """True if a pair is of a kind that can have air between its bodies."""
     return pair.kind == BOX_BOX or pair.kind == BOX_PLANE
 
 
 @njit(cache=True, error_model="numpy", **BORROWS)
 def clear_films(film):
-    """No cell has air yet, and no pair has cells."""
+    """Removes the air of all cells, and the cells of all pairs."""
     film.many[0] = 0
     for k in range(film.films.size):
         clear(film.films[k], film.cells, film.head)
@@ -32,8 +33,8 @@ def clear_films(film):
 
 @njit(cache=True, error_model="numpy", **BORROWS)
 def cover_pair(film, k, bodies, pair, number, motion, h):
-    """Gives cells of the k-th film what they have of a pair, where that is nearest so far; number: of the
-    pair, h: how long ago the step began [ms]."""
+    """Sets the gaps of cells of the k-th film to the bodies of a pair, where that is the nearest so far;
+    number: that of the pair, h: time since the step began [ms]."""
     own, other = (pair.a, pair.b) if film.films[k].carrier == 0 else (pair.b, pair.a)
     plane = pair.kind == BOX_PLANE
     exposed = BLOCK if plane else bodies[other].exposed
@@ -44,7 +45,7 @@ def cover_pair(film, k, bodies, pair, number, motion, h):
 
 @njit(cache=True, error_model="numpy", **BORROWS)
 def link_films(film):
-    """The matrices and areas of all films, and the cells of each pair."""
+    """Computes the matrices and areas of all films, and lists the cells of each pair."""
     for k in range(film.films.size):
         one = film.films[k]
         assemble(one, film.cells, film.flow)
@@ -54,7 +55,7 @@ def link_films(film):
 
 @njit(cache=True, error_model="numpy", **BORROWS)
 def close_rates(film, pairs, motion):
-    """Sets how fast the faces of all cells close."""
+    """Sets the closing rates of the faces of all cells."""
     cells = film.cells
     for k in range(film.many[0]):
         pair, i = pairs[film.listed[k]], film.head[film.listed[k]]

@@ -1,4 +1,4 @@
-"""What a force law is given: where two bodies are and how they move, their shapes, and the law's numbers.
+"""Inputs of a force law: places and motion of two bodies, their shapes, and the numbers of the law.
 
 Named tuples of numbers and tuples: compiled code passes them by value.
 """
@@ -12,15 +12,15 @@ from mdlgen.program.kernel import njit
 
 Vector = tuple[float, float, float]
 Matrix = tuple[float, ...]  # nine, row by row
-Floats = Any  # an array of float64; laws do not ask which
+Floats = Any  # an array of float64, of any kind
 
 
 # Columns of the law of a pair record: numbers as of Law, and the coefficient of rolling resistance.
 LAW_BETA, LAW_STATIC, LAW_DYNAMIC, LAW_STICTION, LAW_SLIDING, LAW_SMOOTHING, LAW_ROLLING = range(7)
 LAW_LEVER, LAW_BEND, LAW = 7, 8, 9
 
-# Of what a body record has of a cylinder (`size`), and of an arc (`arc`, `Plate.shape`): its radius, 0 of a
-# straight guide, the angle of its middle, and half of the angle that it goes over.
+# Columns of a body record for a cylinder (`size`), and for an arc (`arc`, `Plate.shape`): radius, 0 for a
+# straight guide, the angle of its middle, and half of the angle that it spans.
 RADIUS, WIDTH = 0, 1
 ARC_RADIUS, ARC_MIDDLE, ARC_ANGLE = 0, 1, 2
 
@@ -45,8 +45,8 @@ class Frame(NamedTuple):
 
 
 class Box(NamedTuple):
-    """Half lengths along a box's axes, and which of its sides x_min, x_max, y_min, y_max have no neighbour in
-    the sheet, as a bit mask."""
+    """Half lengths along a box's axes, and a bit mask of its sides x_min, x_max, y_min, y_max without a
+    neighbour in the sheet."""
 
     half: Vector
     exposed: int
@@ -61,9 +61,10 @@ class Cylinder(NamedTuple):
 
 
 class Sector(NamedTuple):
-    """The part of a cylinder's round within `angle` [rad] either way of `middle`, a unit vector square to the
-    axis; at most a quarter turn, or contact.WHOLE. Forces act `aside` of where they lie. What passes a sector
-    that `turns` is pressed in by it (see mechanics.point); what meets a standing one aslant hits it."""
+    """The part of a cylinder's round within `angle` [rad] to both sides of `middle`, a unit vector
+    perpendicular to the axis; at most a quarter turn, or contact.WHOLE. Forces are displaced by `aside`. A
+    sector that `turns` presses in a sheet that passes it (see mechanics.point); a sheet that meets a fixed
+    one at an angle has an impact."""
 
     middle: Vector
     angle: float
@@ -75,9 +76,9 @@ class Plate(NamedTuple):
     """A plane or a guide, in its own axes as mechanics.guide has them.
 
     shape: (radius, middle angle, half angle) of an arc, the radius 0 for a flat plate; half: half of its
-    length, width and thickness; top: where its upper face is on its normal; ends: those that are free, as a
-    bit mask; edge: radii of the edges of its upper and its lower face, and 1 where friction holds what is on
-    them (a static analysis); beside: sides of the box that stand before its ends (see mechanics.edge).
+    length, width and thickness; top: place of its upper face along its normal; ends: a bit mask of the free
+    ones; edge: radii of the edges of its upper and its lower face, and 1 where friction holds bodies on them
+    (a static analysis); the last field has sides of the box that stand before its ends (see mechanics.edge).
     """
 
     shape: Vector
@@ -89,12 +90,12 @@ class Plate(NamedTuple):
 
 
 class Law(NamedTuple):
-    """Numbers of a contact: stiffness k (Eq. 10), whether boxes share it (`share: width`), the share of
-    damping beta (Eq. 11), coefficients of friction (Eq. 12), the speeds at which friction has its static and
-    its dynamic one, that at which damping is whole, the radius of the round that a roller's force is spread
-    as, 0: the roller's (see mechanics.contact), and how far friction stands beyond its surface, which is
-    lever z + bend z^2 at a depth z: on a cover what rolls goes faster, or slower, than the core (see
-    model.covers)."""
+    """Numbers of a contact. In order: stiffness k (Eq. 10); 1 if boxes share it (`share: width`); the share
+    of damping beta (Eq. 11); coefficients of friction (Eq. 12); the speeds at which friction has its static
+    and its dynamic value; the speed at which damping is complete; the radius of the round as which a roller's
+    force is spread, 0: the roller's (see mechanics.contact); the lever of friction beyond the surface, which
+    is lever z + bend z^2 at a depth z. With a cover the surface of a roller is faster, or slower, than its
+    core (see model.covers)."""
 
     k: float
     shared: bool
@@ -154,7 +155,7 @@ def law_of(pair):
 
 @njit(cache=True, error_model="numpy", forceinline=True)
 def scaled(law, stiffness, friction, beta):
-    """A law of so many times the stiffness and friction, and another share of damping."""
+    """A law with stiffness and friction multiplied by these factors, and another share of damping."""
     return Law(
         stiffness * law.k,
         law.shared,

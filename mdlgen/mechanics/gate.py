@@ -1,14 +1,15 @@
 """Plates and meshes that a law of time moves, or forces: they turn about a fixed axis or slide along a line.
 
 A prescribed one has `swings` TURNS or SLIDES in its body record, no unknowns, and its law in `drive`: time,
-place and rate of each of its `corners` in turn. Places are angles [rad] or ways [mm] from where the body is
-given. Between two corners the law is the cubic with their places and rates, so place and velocity are
-continuous; without rates it goes by 3 s^2 - 2 s^3 of the way, s the share of the time. Before the first
-corner and after the last one the body stands.
+place and rate of each of its `corners` in turn. Places are angles [rad] or displacements [mm] from the given
+place of the body. Between two corners the law is the cubic with their places and rates, so place and velocity
+are continuous. Without rates it covers the part 3 s^2 - 2 s^3 of the displacement, s the part of the time.
+Before the first corner and after the last one the body is at rest.
 
-A free one is like what is pressed or on an arm (mechanics.arm): its place is the unknown of its `slide`. Its
-`stops` are two places, beyond which a spring k z with the damping of Eq. 11 acts: 1 + beta s(rate), z being
-how far it is beyond, and s the sign of the rate of z. It changes over rates of BLUNT omega z, where
+A free one is like a pressed body or one on an arm (mechanics.arm): its place is the unknown of its `slide`.
+Its `stops` are two places, beyond which a spring k z with the damping of Eq. 11 acts: 1 + beta s(rate), where
+z is the distance beyond, and s the sign of the rate of z. The sign is smoothed over rates of BLUNT omega z,
+where
 omega^2 = k/inertia: so the restitution does not depend on the speed.
 """
 
@@ -26,14 +27,14 @@ from mdlgen.model.limits import MOST_CORNERS, MOST_PLACES
 from mdlgen.model.tables import Floats, MovingPart, StopsPart
 from mdlgen.program.kernel import BORROWS, njit
 
-# Of `swings`: from GATE on a law of time moves the body.
+# Values of `swings`: from GATE on a law of time moves the body.
 GATE, TURNS, SLIDES = 3, 3, 4
 WIDE = 3  # numbers of a corner
 # Of a record's `stops`: places of both, stiffness (0: there are none), beta, and BLUNT omega [1/ms].
 LOW, HIGH, STOP, SHARE, OVER = 0, 1, 2, 3, 4
 STOPS = [("stops", "f8", 5)]
-# Of the speed of an impact, below which the damping of a stop changes its sign. At 0.05 a restitution of 0.2
-# comes out 1 % too high, greater ones less.
+# Part of the speed of an impact over which the damping of a stop changes its sign. At 0.05 a restitution of
+# 0.2 is 1 % too high; for greater ones the error is smaller.
 BLUNT = 0.05
 
 assert WIDE * MOST_PLACES <= 2 * MOST_CORNERS, "the corners of a gate fit in the array of a drive's"
@@ -47,8 +48,8 @@ class Course(NamedTuple):
 
 
 class Stop(NamedTuple):
-    """What a stop does: its force along the motion, what that loses as the place and as the rate grow, the
-    energy that it stores, and the power that it dissipates."""
+    """Action of a stop: its force along the motion, the decrease of that per place and per rate, its stored
+    energy and its dissipated power."""
 
     force: float
     by_place: float
@@ -77,7 +78,7 @@ def gate(row: np.void, moving: MovingPart, length: float, mass: float, time: flo
         moving.force * push,
         inertia,
     )
-    if moving.turns:  # as the arm of a driven roller, which turns with it
+    if moving.turns:  # like the arm of a driven roller, which turns with it
         row["swings"], row["carries"], row["axis"] = 2, 1, moving.axis
         row["mass"], row["hang"] = 0.0, moving.moment * mass * length
     if moving.stops is not None:
@@ -102,10 +103,10 @@ def write(row: np.void, corners: Floats) -> None:
 
 
 def command(bodies: np.ndarray, row: int, t: float, value: float, duration: float) -> None:
-    """Sends the gate of a body record to a place: rewrites its law from the time t on. In `duration` it goes
-    from where it is at t, with the speed that it has there, to `value`, where it stands. All in the solver's
-    units. The law before t is lost: a step that is taken afterwards must not begin before t. Where sheets
-    sleep, a run works on a copy of the records (lattice.integrate.awake), which needs the same command.
+    """Sends the gate of a body record to a place: rewrites its law from the time t on. In `duration` it moves
+    from its place and its speed at t to `value`, where it stops. All in the solver's units. The law before t
+    is lost: a step that is taken afterwards must not begin before t. Where sheets sleep, a run works on a
+    copy of the records (lattice.integrate.awake), which needs the same command.
 
     Raises ValueError where the body is no gate or the duration is not above 0.
     """
@@ -142,7 +143,7 @@ def course(body, t):
 
 @njit(cache=True, error_model="numpy", **BORROWS)
 def went(body, t, until):
-    """By how much the place of a gate changes from t until then."""
+    """Change of the place of a gate from t to `until`."""
     return course(body, until).place - course(body, t).place
 
 
@@ -166,7 +167,7 @@ def shift_gate(body, b, way, x, r, xm, rm):
 
 @njit(cache=True, error_model="numpy", **BORROWS)
 def rate_gate(body, b, rate, motion):
-    """Sets velocity and angular velocity of body b where it stands in a Motion, by the rate of its place."""
+    """Sets velocity and angular velocity of body b at its place in a Motion, from the rate of its place."""
     way = three(body.way)
     spin = (0.0, 0.0, 0.0)
     if body.swings == TURNS:
@@ -178,8 +179,8 @@ def rate_gate(body, b, rate, motion):
 
 @njit(cache=True, error_model="numpy", **BORROWS)
 def middle_of_gate(body, b, h, t, x, r, motion):
-    """Places body b in the middle t of a step of 2 h, halfway between both ends and at the mean rate, as the
-    unknowns of the step have it."""
+    """Places body b in the middle t of a step of 2 h: halfway between both ends and at the mean rate, like
+    the unknowns of the step."""
     way = went(body, t - h, t + h)
     shift_gate(body, b, 0.5 * way, x, r, motion.x, motion.r)
     rate_gate(body, b, 0.5 * way / h if h > 0.0 else course(body, t).rate, motion)
@@ -187,20 +188,20 @@ def middle_of_gate(body, b, h, t, x, r, motion):
 
 @njit(cache=True, error_model="numpy", **BORROWS)
 def gate_at(body, b, t, until, x, r, motion):
-    """Places body b, at x and r at the time t, where its law has it at a later time."""
+    """Moves body b from its place x and r at the time t to that of its law at a later time."""
     shift_gate(body, b, went(body, t, until), x, r, motion.x, motion.r)
     rate_gate(body, b, course(body, until).rate, motion)
 
 
 @njit(cache=True, error_model="numpy", **BORROWS)
 def power_of(motion, b, force, torque):
-    """What a force and a torque on body b do by its motion."""
+    """Power of a force and a torque on body b due to its motion."""
     return dot(force, vec(motion.u, b)) + dot(torque, vec(motion.w, b))
 
 
 @njit(cache=True, error_model="numpy", **BORROWS)
 def fastest_of_gate(body, x, b, t):
-    """How fast a place of a plate moves at most."""
+    """Bound on the speed of any place of a plate."""
     rate = abs(course(body, t).rate)
     if body.swings == SLIDES:
         return rate

@@ -1,14 +1,14 @@
 """Contact of a box with a guide: a fixed plate, straight or bent to an arc, touched on one side or on both.
 
-The axes of a guide: z lies across the paper, along its width. Of a straight guide x goes along it and y is
-its normal, and the origin is its middle; of an arc the origin lies on its axis, and angles are counted from x
-to y. Where both sides may be touched, a box is on the side that its centre is on.
+The axes of a guide: z lies across the paper, along its width. A straight guide has x along it, y as its
+normal, and the origin in its middle. An arc has the origin on its axis, and angles are counted from x to y.
+Where both sides may be touched, a box is on the side of its centre.
 
-A flat or hollow face meets the corners of that part of the box's face that lies over the guide. They share k
-by the area that each represents, so that a corner that comes over the guide begins without a force. A box
-over a straight guide so gives k z^1.5, and one whose corners are all z deep in a hollow does, too:
-no point of a flat face is deeper in a hollow than the deepest corner. A round face is met as a roller that
-does not turn (`box_sector`). With `share: width` k goes with the part of the box's face, or of its width,
+A flat or hollow face touches the corners of that part of the box's face that lies over the guide. They share
+k by the area that each represents, so that a corner that comes over the guide begins without a force. So a
+box over a straight guide has k z^1.5, and one whose corners are all z deep in a hollow has that, too: no
+point of a flat face is deeper in a hollow than the deepest corner. A round face acts like a roller that does
+not turn (`box_sector`). With `share: width` k is proportional to the part of the box's face, or of its width,
 that the guide covers: where a sheet passes from one guide to the next, both together count as one. At free
 ends the law passes into that of the edge, see mechanics.edge; the long sides of an arc have no edge.
 """
@@ -27,20 +27,20 @@ from mdlgen.mechanics.point import STORED, Load, push, turn
 from mdlgen.mechanics.vector import add, back, cross, dot, rotate, scale, sub
 from mdlgen.program.kernel import CALLED, OWNS, njit
 
-# Cosine of the angle of a sheet to a plate beyond which the sheet's middle plane does not tell the side.
+# Cosine of the angle of a sheet to a plate beyond which the sheet's middle plane does not determine the side.
 UPRIGHT = 0.3
 INSIDE, OUTSIDE, BOTH = 1, 2, 3  # sides: left of a line or inside an arc; right or outside; both
 
 
 @njit(cache=True, error_model="numpy", forceinline=True)
 def inward(at, radius):
-    """How far a point (guide's axes) is left of a straight guide's middle, or inside of an arc's radius."""
+    """Distance of a point (guide's axes) to the left of a straight guide's middle, or inside of an arc."""
     return at[1] if radius == 0.0 else radius - math.sqrt(at[0] * at[0] + at[1] * at[1])
 
 
 @njit(cache=True, error_model="numpy", forceinline=True)
 def upper(side, thick):
-    """Where the upper face of a guide, left of a line or inside of an arc, is on its normal."""
+    """Place along its normal of the upper face of a guide, left of a line or inside of an arc."""
     return 0.0 if side == INSIDE else thick if side == OUTSIDE else 0.5 * thick
 
 
@@ -65,11 +65,11 @@ def _beyond(i, shape):
 
 @njit(cache=True, error_model="numpy")
 def _side(at, upright, plate):
-    """Which face of an arc a box at a place meets: 1.0 the hollow one, -1.0 the round one.
+    """Face of an arc that a box at a place touches: 1.0 the hollow one, -1.0 the round one.
 
-    That is by where the nearest place of the arc is from the middle plane of the sheet, whose normal is
-    `upright` (guide's axes): a box that leaves an arc has its centre beyond the arc's end, where the radius
-    says nothing. A box that is upright to the arc has the face of the side that its centre is on.
+    The side is that of the arc's nearest place relative to the middle plane of the sheet, whose normal is
+    `upright` (guide's axes). The radius does not determine it for a box that leaves an arc, whose centre is
+    beyond the arc's end. A box perpendicular to the arc touches the face on the side of its centre.
     """
     radius, middle, angle = plate.shape
     turn = math.atan2(at[1], at[0]) - middle
@@ -87,10 +87,11 @@ def _side(at, upright, plate):
 
 @njit(cache=True, error_model="numpy", **OWNS, **CALLED)
 def box_guide(out, a, box, b, plate, law):
-    """Box a on guide b, which does not move. A box meets the face of the side that it is on.
+    """Box a on guide b, which does not move. A box touches the face on its own side.
 
-    The guide's `side` says where the plate is, see `upper`: radius and line are those of the face that may
-    be touched, and of the plate's middle for both. What is deeper than the plate is thick does not touch.
+    The guide's `side` determines the place of the plate, see `upper`: radius and line are those of the face
+    that may be touched, or of the plate's middle for both. Points deeper than the thickness of the plate do
+    not touch.
     """
     zero = (0.0, 0.0, 0.0)
     half, half_b, shape, top, ends = box.half, plate.half, plate.shape, plate.top, plate.ends
@@ -128,7 +129,7 @@ def box_guide(out, a, box, b, plate, law):
             bend = Cylinder((rb[2], rb[5], rb[8]), radius - top + thick, 2.0 * half_b[1])
             own = scaled(law, part, 1.0, law.beta)
             box_sector(out, a, box, b, bend, Sector(to, shape[ARC_ANGLE], zero, False), own)
-            # the part that the round has of k changes as the box turns
+            # the part of k on the round changes as the box turns
             turn(out, rotate(rb, scale((stored - out[STORED]) / part, cross(tilted, slope))))
     else:
         _hollow(out, a, box, b, plate, look, tilted, law)
@@ -184,5 +185,5 @@ def _hollow(out, a, box, b, plate, look, tilted, law):
         where = add(b.x, rotate(rb, point))
         energy = 0.4 * spring * depth
         push(out, where, rotate(rb, way), Load(spring, depth, energy), a, b, law)
-        if ends != 0:  # the part that the face has of k falls as the box turns
+        if ends != 0:  # the part of k on the face decreases as the box turns
             turn(out, rotate(rb, scale(-0.4 * depth * depth * math.sqrt(depth), cross(tilted, slope))))

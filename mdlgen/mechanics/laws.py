@@ -76,6 +76,6 @@ def friction_over_speed(v, mu_s, mu_d, v_s, v_d):
 
 @njit(cache=True, error_model="numpy", forceinline=True)
 def held_over_speed(v, hold, mu):
-    """Friction for 1 of the normal force, over a speed, of what a spring holds: `hold`, from its limit mu on
-    mu/v (see mechanics.bristle)."""
+    """Friction of a spring per normal force and per speed: `hold`, and mu/v above its limit mu (see
+    mechanics.bristle)."""
     return hold if hold * v <= mu else mu / v

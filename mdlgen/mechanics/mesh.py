@@ -13,20 +13,21 @@ Neither the number of triangles nor that of boxes changes the force.
 
 A block of one box has six faces. At each place the face with the least pressure is the one that acts, so that
 the pressure is 0 on all of the surface and continuous inside: no edge or corner of a mesh that comes in, and
-no edge of the block, begins with a force. Along its edges a flat face so has less than k z^1.5, by 0.6 of the
+no edge of the block, begins with a force. So a flat face has less than k z^1.5 along its edges, by 0.6 of the
 depth times the ratio of both faces' pressures there (`_side_of`). A box of a sheet is thin: its two broad
-faces go on beyond its sides and its thickness, since its neighbours do, and act on triangles that face them
-by less than 53 to 66 deg; where a sheet ends, nothing takes over at its edge. What came in through one of
-them does not press on the other (mechanics.mesh_pressure). On a sharp edge a sheet may be deeper than half of
-its thickness, and both faces look the same then: so a pair remembers which one pressed alone (`met_face`).
+faces extend beyond its sides and its thickness, since its neighbours do, and act on triangles at an angle to
+them of less than 53 to 66 deg; where a sheet ends, no neighbour takes over at its edge. A triangle that came
+in through one broad face does not press on the other (mechanics.mesh_pressure). On a sharp edge a sheet may
+be deeper than half of its thickness, where both faces look the same: so a pair stores the face that pressed
+alone (`met_face`).
 
 With `at: nodes` pressures are integrated over triangles, with `at: centres` they are those in their middles,
-as the paper has both for contact between meshes (section 3.1). What presses on a face acts as four equal
+as the paper has both for contact between meshes (section 3.1). The pressure on a face acts as four equal
 forces with its sum, its middle and its spread, and a couple that is the rest of the torque. On a roller these
-forces are one nip (mechanics.point). Its contact line lies along the axis through the middle of what presses
-on the box and, where that comes near another box, on the face as if the sheet went on flat.
+forces are one nip (mechanics.point). Its contact line lies along the axis through the middle of the pressure
+on the box; near another box it lies on the face as if the sheet continued flat.
 
-The outer sides of a sheet meet what leans against them (mechanics.mesh_side).
+The outer sides of a sheet touch triangles that are inclined to them (mechanics.mesh_side).
 """
 
 from __future__ import annotations
@@ -70,21 +71,21 @@ from mdlgen.mechanics.vector import (
 )
 from mdlgen.program.kernel import CALLED, OWNS, njit
 
-_SPAN = 2.5  # what presses under a round reaches no further than sqrt(5) times its spread
-LOST = 1e30  # what a depth that ends a run is above
-BLOCK = 15  # all four sides of a box are outer ones
+_SPAN = 2.5  # bound on the reach of a pressure under a round, which is sqrt(5) times its spread.
+LOST = 1e30  # depth above which a run ends.
+BLOCK = 15  # all four sides of a box are outer ones.
 # A box that is thinner than this part of its shorter side is a sheet of one box, not a block. A convention:
 # the theory of thin plates holds up to there.
 THIN = 0.1
-# A pair remembers which broad face of its box pressed alone.
+# Broad face of its box that pressed alone, which a pair stores.
 NEITHER, UPPER, LOWER = 0, 1, 2
 
 
 @njit(cache=True, error_model="numpy")
 def _nip(both, room, head, meshes, placed, half, side, exposed, stiff):
-    """What presses on a broad face that goes on over the sides that are not exposed: its force along the
-    file's axes and its middle in the face (force, u, v). The first of `both` sums has what presses on the
-    box itself, the second is room."""
+    """Pressure on a broad face that extends over the sides which are not exposed: its force along the file's
+    axes and its middle in the face (force, u, v). The first of `both` sums has the pressure on the box
+    itself, the second is scratch."""
     own, whole = both[0], both[1]
     u, v = own[FIRST_U] / own[IN_ALL], own[FIRST_V] / own[IN_ALL]
     du = math.sqrt(max(own[SECOND_U] / own[IN_ALL] - u * u, 0.0))
@@ -104,14 +105,14 @@ def _nip(both, room, head, meshes, placed, half, side, exposed, stiff):
     moved = Placed(add(placed.middle, rotate(placed.axes, aside)), placed.axes, placed.frame)
     gather(whole, room, head, meshes, moved, wide, side, stiff)
     force = three(whole[FORCE:])
-    if dot(force, force) <= 0.0:  # all that is more is too deep
+    if dot(force, force) <= 0.0:  # the additional part is too deep
         return three(own[FORCE:]), u, v
     return force, whole[FIRST_U] / whole[IN_ALL] + aside[0], whole[FIRST_V] / whole[IN_ALL] + aside[1]
 
 
 @njit(cache=True, error_model="numpy", forceinline=True)
 def _is_block(box):
-    """A block has six faces that press, a box of a sheet has two."""
+    """True for a block, all six faces of which press; a box of a sheet has two."""
     half = box.half
     return box.exposed == BLOCK and half[2] > THIN * min(half[0], half[1])
 
@@ -127,7 +128,7 @@ def _broad(half, sign, met, deep):
 
 @njit(cache=True, error_model="numpy", forceinline=True)
 def _side_of(head, half, q, sign):
-    """What a face of a block presses on alone, as a Side."""
+    """Region in which a face of a block is the one that presses, as a Side."""
     if head.basis > 0.0:
         return Side(q, sign, 1.0, 1.0, half[q], 0.0, False)
     # pressures of two faces are the same where depths go with the power 2/3 of the areas
@@ -146,8 +147,8 @@ def _placed(a, b, head):
 
 @njit(cache=True, error_model="numpy", **OWNS, **CALLED)
 def met_face(a, box, b, head, meshes, met):
-    """The broad face of a sheet's box that presses alone now, if `met` was the one before. A mesh that is
-    thick everywhere needs no memory."""
+    """Broad face of a sheet's box that presses alone now, if `met` was the one before. A mesh that is thick
+    everywhere needs no memory."""
     half, placed = box.half, _placed(a, b, head)
     if head.thin == 0 or _is_block(box):
         return NEITHER
@@ -181,7 +182,7 @@ def box_mesh(out, a, box, b, axis, head, meshes, law, met):
     lost, spot, out_of = 0.0, a.x, (0.0, 0.0, 0.0)
     for face in range(6 if block else 2):
         q, sign = (2 + face // 2) % 3, 1.0 if face % 2 == 0 else -1.0
-        if not block and met == LOWER:  # what pressed before comes first
+        if not block and met == LOWER:  # the face that pressed before comes first
             sign = -sign
         side = _side_of(head, half, q, sign) if block else _broad(half, sign, met, deep)
         p, r = (q + 1) % 3, (q + 2) % 3
@@ -216,7 +217,7 @@ def box_mesh(out, a, box, b, axis, head, meshes, law, met):
             wide = math.sqrt(5.0 * ((du * seen[p]) ** 2 + (dv * seen[r]) ** 2))
             if wide > 0.0:
                 pressed = passing(line, across, 2.0 * sums[DEEPEST] / wide, a, b)
-        # four forces along one direction are all of the force, but not all of its torque
+        # four forces along one direction have the whole force, but not its whole torque
         turn(out, sub(torque, cross(sub(middle, a.x), rotate(frame, scale(over, three(sums[FORCE:]))))))
         for corner in range(4):
             at_u = u + (du if corner % 2 == 0 else -du)
@@ -232,13 +233,13 @@ def box_mesh(out, a, box, b, axis, head, meshes, law, met):
                 push_in_nip(out, point, normal, nip, Load(spring, sums[DEEPEST], energy), a, b, law)
             else:
                 push(out, point, normal, Load(spring, sums[DEEPEST], energy), a, b, law)
-    if lost > 0.0 and out[PRESSING] == 0.0:  # what is as near to the other side is in contact there
+    if lost > 0.0 and out[PRESSING] == 0.0:  # a part as near to the other side is in contact there
         push(out, spot, out_of, Load(lost, math.inf, 0.0), a, b, law)
 
 
 @njit(cache=True, error_model="numpy", **CALLED)
 def mesh_near(head, meshes, xa, ra, half, xb, rb, more):
-    """Whether a box that is larger by `more` on all sides may meet a leaf of the mesh's tree."""
+    """True if a box that is larger by `more` on all sides may meet a leaf of the mesh's tree."""
     frame = matmul(rb, nine(head.axes))
     middle = back(frame, sub(xa, add(xb, rotate(rb, three(head.place)))))
     wide = (half[0] + more, half[1] + more, half[2] + more)

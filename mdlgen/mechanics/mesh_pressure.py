@@ -1,8 +1,8 @@
-"""Pressure of the triangles of a mesh on one face of a box: each is cut to the region of the face, and its
-rest is pressed by its depth (see mechanics.mesh for the laws).
+"""Pressure of the triangles of a mesh on one face of a box: each is cut to the region of the face, and the
+remaining polygon has a pressure by its depth (see mechanics.mesh for the laws).
 
 Force and torque of a triangle are integrals of the pressure along its normal, at the triangle itself. They
-are sums over Dunavant's points, which all triangles of a polygon about its centroid have: 7 for each.
+are sums over Dunavant's 7 points in each of the triangles that a polygon forms with its centroid.
 """
 
 from __future__ import annotations
@@ -19,9 +19,9 @@ from mdlgen.program.kernel import njit
 
 STEEP, GENTLE = 0.4, 0.6  # cosines of the angles between which the law of broad faces ends
 EVER = 1e300
-# Columns of what presses on a face: its force along the file's axes (3), the torque of that about the box's
-# middle (3), and the sum of its parts; moments of these in the face, of first and of second order, and with
-# their depth; energy; greatest depth; what would be the force of what is too deep.
+# Columns of the sums of a face: force along the file's axes (3); its torque about the box's middle (3); the
+# sum of the magnitudes; their moments in the face, of first and of second order, and with the depth; energy;
+# greatest depth; the force that parts which are too deep would have.
 FORCE, TORQUE, IN_ALL, FIRST_U, FIRST_V, SECOND_U, SECOND_V, FIRST_Z = 0, 3, 6, 7, 8, 9, 10, 11
 ENERGY, DEEPEST, TOO_DEEP, SUMS = 12, 13, 14, 15
 # Dunavant's rule of degree 5 on a triangle: two groups of three points, each near a corner or the middle of a
@@ -32,9 +32,9 @@ _CENTROID = 0.225
 
 
 class Side(NamedTuple):
-    """A face of a box: its axis q and on which side it is; of a block how fast the region in which the face
-    is the one that presses narrows with depth, along p and along r, and how deep it is: 0, 0 and EVER for a
-    face that goes on over its sides. `through` and `taken` are for such a face, see `_by_the_other`."""
+    """A face of a box: its axis q and its side. For a block, the region in which the face is the one that
+    presses: its narrowing with depth, along p and along r, and its depth. These are 0, 0 and EVER for a face
+    that extends over its sides. `through` and `taken` are for such a face, see `_by_the_other`."""
 
     q: int
     sign: float
@@ -70,9 +70,9 @@ class Face(NamedTuple):
 
 
 class Element(NamedTuple):
-    """A triangle as a face sees it: the stiffness of its pressure per true area, whether that is linear in
-    depth; the depth from which on it is too deep; the part of its normal into the face, and those along and
-    across it, in times of how the region narrows there."""
+    """A triangle relative to a face: the stiffness of its pressure per true area; true if that is linear in
+    depth; the depth from which on it is too deep; the component of its normal into the face, and those along
+    and across it, times the narrowing of the region there."""
 
     stiffness: float
     linear: bool
@@ -84,7 +84,7 @@ class Element(NamedTuple):
 
 @njit(cache=True, error_model="numpy", forceinline=True)
 def _part(cosine):
-    """How much of the broad faces' law acts on a triangle at an angle to them."""
+    """Part of the broad faces' law that acts on a triangle at an angle to them."""
     return ramp(cosine, STEEP, GENTLE)
 
 
@@ -118,8 +118,8 @@ def _cut(points, kept, count, axis, sign, narrows, limit):
 
 @njit(cache=True, error_model="numpy")
 def _over(room, u, v, z, face):
-    """What of a triangle with corners at u, v (depths z) lies over a Face and below it: its points in
-    room[which]. Returns (which, how many)."""
+    """Cuts a triangle with corners at u, v (depths z) to the region over a Face and below it. Returns (which,
+    number of points); the points are in row `which` of the scratch array."""
     for k in range(3):
         room[0, k, 0], room[0, k, 1], room[0, k, 2] = u[k], v[k], z[k]
     which, count = 0, 3
@@ -143,15 +143,15 @@ def _over(room, u, v, z, face):
 
 @njit(cache=True, error_model="numpy", forceinline=True)
 def _stored(element, u, v):
-    """Energy of a place over its force and depth, in times of what a pressure of this power stores: that of
-    a pressure in a region of a block has a share along its sides (see mechanics.mesh)."""
+    """Energy of a place over its force and depth, relative to that of a pressure of the same power. It
+    differs since the region of a block has a part along its sides (see mechanics.mesh)."""
     along = element.leans_along if u > 0.0 else -element.leans_along
     return element.cosine - along - (element.leans_across if v > 0.0 else -element.leans_across)
 
 
 @njit(cache=True, error_model="numpy", forceinline=True)
 def _press(sums, area, u, v, depth, element):
-    """Adds what an area of an Element does at a depth."""
+    """Adds the pressure of an area of an Element at a depth."""
     if depth <= 0.0 or depth > BEYOND * element.deepest:
         return
     force = area * element.stiffness * depth * (1.0 if element.linear else math.sqrt(depth))
@@ -169,7 +169,8 @@ def _press(sums, area, u, v, depth, element):
 
 @njit(cache=True, error_model="numpy")
 def _press_all(sums, area, one, two, three, element):
-    """Adds what a triangle (its corners) does, by a rule that is exact up to the fifth power of places."""
+    """Adds the pressure of a triangle (its corners), by a rule that is exact up to the fifth power of
+    places."""
     u = (one[0] + two[0] + three[0]) / 3.0
     v = (one[1] + two[1] + three[1]) / 3.0
     z = (one[2] + two[2] + three[2]) / 3.0
@@ -215,8 +216,9 @@ def _size(one, two, three):
 
 @njit(cache=True, error_model="numpy")
 def _piece(sums, points, count, element, middles):
-    """Adds what a polygon does: the triangles that its sides make with its centroid, so that a corner more
-    that is hardly apart from the next one changes as little as their distance; or its centroid alone."""
+    """Adds the pressure of a polygon: of the triangles that its sides form with its centroid, or of the
+    centroid alone. So an additional corner near another one changes the result in proportion to their
+    distance."""
     first, whole, center = vec(points, 0), 0.0, (0.0, 0.0, 0.0)
     for i in range(1, count - 1):
         one, two = vec(points, i), vec(points, i + 1)
@@ -246,8 +248,8 @@ def _middle(points, count):
 
 @njit(cache=True, error_model="numpy")
 def _by_the_other(meshes, head, t, face, u, v, z, deepest):
-    """Triangle t looks at a broad face of a box: whether it came in through the other face. Then it does not
-    press here. u, v, z: its middle; deepest: the greatest depth of its points.
+    """True if triangle t, which looks at a broad face of a box, came in through the other face. Then it does
+    not press here. u, v, z: its middle; deepest: the greatest depth of its points.
 
     A sheet lies on a sharp edge. The lower side of the edge looks at the upper face of the sheet and is deep
     below it. From there the part is followed upwards to where it ends. The other face has let that end in by
@@ -265,13 +267,13 @@ def _by_the_other(meshes, head, t, face, u, v, z, deepest):
     wall, by = behind(bounds, links, triangles, head.first, head.end, at, face.way, far)
     if by < 0 or dot(face.way, three(triangles[by, NORMAL:])) <= STEEP:
         return False  # the other face has nothing of that triangle
-    # what is as deep as the other face has it anywhere is that, up to round-off
+    # 1e-6: at the limit a triangle counts as one of the other face, in spite of round-off
     return z - wall > (1.0 - 1e-6) * thick - face.through or (face.taken and 2.0 * z > wall)
 
 
 @njit(cache=True, error_model="numpy", forceinline=True)
 def _element(sums, room, head, meshes, t, face):
-    """Adds what one triangle does to a Face."""
+    """Adds the pressure of one triangle on a Face."""
     triangles = meshes.triangles
     way, along, across, where = face.way, face.along, face.across, face.where
     hp, hr, block = face.half_along, face.half_across, face.most < EVER
@@ -335,7 +337,7 @@ def _element(sums, room, head, meshes, t, face):
     )
     torque = cross(at, normal)
     if not block:
-        # what of the law acts changes as the box turns
+        # the part of the law that acts changes as the box turns
         torque = add(torque, scale((sums[ENERGY] - before[4]) * _turning(cosine), cross(way, normal)))
     for i in range(3):
         sums[FORCE + i] += force * normal[i]
@@ -344,7 +346,7 @@ def _element(sums, room, head, meshes, t, face):
 
 @njit(cache=True, error_model="numpy")
 def gather(sums, room, head, meshes, placed, half, side, stiff):
-    """Adds up what presses on a Side of a box, into its sums."""
+    """Adds the pressure of all triangles on a Side of a box to its sums."""
     bounds, links = meshes.bounds, meshes.links
     middle, axes = placed.middle, placed.axes
     q, sign, narrows_p, narrows_r, most, through, taken = side

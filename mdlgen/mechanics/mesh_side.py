@@ -1,11 +1,11 @@
 """The outer sides of a sheet against a mesh.
 
-An outer side of a sheet meets a triangle that leans against it: at the ends of the side, in the middle of the
-thickness, half of k z^1.5, z the depth below the nearest triangle. That law begins at 3 to 9 deg, that of the
-broad faces ends at 53 to 66 deg, one passing into the other. Where a side stands against what is steeper than
-45 to 64 deg, the end of a plate, the broad faces of its box press on nothing. An edge between triangles is as
-sharp as they make it; a mesh with an `edge` has it rounded: of a point that is less than the radius r below
-two faces the depth is
+An outer side of a sheet touches a triangle that is inclined to it: at the ends of the side, in the middle of
+the thickness, with half of k z^1.5, z the depth below the nearest triangle. That law begins at 3 to 9 deg,
+and that of the broad faces ends at 53 to 66 deg; both are blended. Where a side touches a triangle steeper
+than 45 to 64 deg, the end of a plate, the broad faces of its box do not press. An edge between triangles is
+sharp; a mesh with an `edge` has it rounded. The depth of a point that is less than the radius r below two
+faces is then
 
     r - sqrt((r - z1)^2 + (r - z2)^2)        and the normal looks away from the round's axis.
 """
@@ -21,8 +21,8 @@ from mdlgen.mechanics.tree import NORMAL, depth_at, next_at
 from mdlgen.mechanics.vector import add, dot, rotate, scale, three
 from mdlgen.program.kernel import njit
 
-LEVEL, LEANING = 0.05, 0.15  # sines of the angles between which the law begins
-UPRIGHT, STANDING = 0.7, 0.9  # sines of those between which a box is beside a plate, not over it
+LEVEL, LEANING = 0.05, 0.15  # sines of the angles between which the law begins.
+UPRIGHT, STANDING = 0.7, 0.9  # sines of the angles between which a box is in front of a plate, not over it.
 
 
 class Placed(NamedTuple):
@@ -42,7 +42,7 @@ def ramp(x, low, high):
 
 @njit(cache=True, error_model="numpy")
 def meet_sides(out, a, box, placed, head, meshes, b, law):
-    """The outer sides of box a against the mesh; returns the part of the law of broad faces that is left."""
+    """The outer sides of box a against the mesh; returns the factor of the law of broad faces."""
     half, exposed = box
     middle, axes, frame = placed
     bounds, links, triangles = meshes.bounds, meshes.links, meshes.triangles

@@ -1,4 +1,4 @@
-"""Meshes of a Model in tables for compiled code: where each stands, and its tree of triangles."""
+"""Meshes of a Model in tables for compiled code: the place of each, and its tree of triangles."""
 
 from __future__ import annotations
 
@@ -11,9 +11,9 @@ from mdlgen.mechanics.tree import AFTER, AREA, FIRST, THICK, WIDTH, build_tree
 from mdlgen.model.meshes import origin
 from mdlgen.model.tables import Floats, Ints, Model
 
-DEEPEST = 1.0  # mm: what is deeper in a part is about to come out at its other side, or is lost
+DEEPEST = 1.0  # mm: a deeper point is about to come out at the other side of the part, or is lost
 SHARP = 1e-6  # cosine beyond which an edge is less than square; rounded files have square ones a little less
-BEYOND = 1.5  # how far beyond that depth a contact is still seen, so that a run can end
+BEYOND = 1.5  # factor on that depth up to which a contact is still detected, so that a run can end
 HEAD = np.dtype(
     [
         ("first", "i8"),  # node of the tree
@@ -23,7 +23,7 @@ HEAD = np.dtype(
         ("basis", "f8"),  # 4/3 w sqrt(2 R) of the roller that it is on, 0: fixed
         ("middles", "i8"),  # depth is looked at in the middles of elements
         ("most", "f8"),  # DEEPEST
-        ("thin", "i8"),  # whether it is thinner than twice that anywhere, or has a sharp edge
+        ("thin", "i8"),  # 1 where some part is thinner than twice that, or an edge is sharp
         ("edge", "f8"),  # radius of its edges, 0: sharp
         ("reach", "f8"),  # greatest distance from the body's centre
         ("unseen", "f8"),  # how far a box may move from one state that is looked at to the next
@@ -74,7 +74,7 @@ def mesh_tables(model: Model, mm: float = 1.0) -> Meshes:
 
 
 def _sharp(corners: Floats, triangles: Ints) -> bool:
-    """Whether two triangles of a closed surface meet at less than 90 deg, inside or outside."""
+    """True if two triangles of a closed surface meet at less than 90 deg, inside or outside."""
     one, two, three = (corners[triangles[:, k]] for k in range(3))
     normals = np.cross(two - one, three - one)
     sides = np.sort(triangles[:, [[0, 1], [1, 2], [2, 0]]].reshape(-1, 2), axis=1)
@@ -86,8 +86,8 @@ def _sharp(corners: Floats, triangles: Ints) -> bool:
 
 
 def _unseen(table: Floats) -> float:
-    """A little less than the band in which a box that is too deep is seen, where the part is thinnest, but
-    for the 2 % of its surface at its sharpest edges."""
+    """A little less than the band in which a box that is too deep is detected, where the part is thinnest,
+    without the 2 % of its surface at its sharpest edges."""
     order = np.argsort(table[:, THICK])
     area = np.cumsum(table[order, AREA])
     thin = table[order[np.searchsorted(area, 0.02 * area[-1])], THICK]
@@ -95,7 +95,7 @@ def _unseen(table: Floats) -> float:
 
 
 def mesh_numbers(model: Model) -> tuple[np.ndarray, np.ndarray]:
-    """Of each kept pair: the number of its mesh (0 where it has none), and the body that this moves with."""
+    """Number of the mesh of each kept pair (0 where it has none), and the body with which the mesh moves."""
     number = {mesh.body: k for k, mesh in enumerate(model.meshes)}
     moved = {m.body: model.rollers[m.on].body for m in model.meshes if m.on >= 0}
     bodies = model.pairs.b.tolist()

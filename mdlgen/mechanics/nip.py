@@ -5,29 +5,29 @@ roller's axis, times the part of the roller's width that the box covers. Where b
 one roller (`share: width`), they also share k across it: each takes its part of the elastic foundation that
 has the same law. A pressure K zeta per area, zeta the depth of each point, under a roller of radius R and
 width w pressed z deep into a flat face, gives F = K w 4/3 sqrt(2R) z^1.5; with K = 3 k/(4 w sqrt(2 R)) that
-is k z^1.5 again. So a roller that passes from box to box feels one sheet. Beyond a free edge nothing takes
-over: there the box keeps the whole, about the contact line of the roller as if the sheet went on, and as an
-edge comes to that line the pressure draws in to it, since force, moment and damping of both sides of that
-place must be the same. `share: pair` gives every box the full k, as MotionSolve does.
+is k z^1.5 again. So a roller that passes from box to box acts as on one sheet. Beyond a free edge no
+neighbour takes over. There the box keeps the whole pressure, about the contact line as if the sheet
+continued. As an edge comes to that line the pressure is drawn in to it, since force, moment and damping on
+both sides of that place must be equal. `share: pair` gives every box the full k, as MotionSolve does.
 
-Two rollers that face each other across a sheet must press alike on each of two boxes as a joint passes
-between them: what one of them presses further along than the other would turn the boxes out of the sheet, by
-a kink at every joint that passes, and fling a light sheet. With the pressure k z^1.5 of a round of radius R
-each reaches sqrt(2 R z), and in balance z goes with k^(-2/3). So the pressure of rollers that face each other
-is that of rounds whose radii go with k^(2/3) (`spread`, see mdlgen.model.nips); the force and its line are
-those of the roller. Where the radius is not the roller's, the moment on a box that ends in the nip is not
-that of the stored energy, but differs by (spread - R) times the energy per length at that end. What this
-takes where a sheet leaves a nip with another curvature than it came with is counted with what is dissipated.
+Two rollers that face each other across a sheet must press equally on each of two boxes as a joint passes
+between them. Otherwise the excess of one roller would turn the boxes out of the sheet, by a kink at every
+joint that passes, and fling a light sheet. With the pressure k z^1.5 of a round of radius R each reaches
+sqrt(2 R z), and in balance z is proportional to k^(-2/3). So the pressure of rollers that face each other is
+that of rounds whose radii are proportional to k^(2/3) (`spread`, see mdlgen.model.nips); the force and its
+line are those of the roller. Where the radius is not the roller's, the moment on a box that ends in the nip
+does not follow from the stored energy: it differs by (spread - R) times the energy per length at that end.
+Its work, where a sheet leaves a nip with another curvature than it had before, counts as dissipated.
 
-A roller that leans out of the face presses it square to its own axis, so that the pushes add up to a force
-along the sheet. Where the roller ends on the sheet, its rim pushes back with the energy per length there
-(`_rim`): both together are what the stored energy asks for where a sheet is moved along the axis. So a sheet
+A roller that is inclined to the face presses perpendicular to its own axis, so that the forces have a
+resultant along the sheet. Where the roller ends on the sheet, its rim pushes back with the energy per length
+there (`_rim`): both together are the gradient of the stored energy for a motion along the axis. So a sheet
 that is wider than the roller is not pushed at all, and one that is narrower is squeezed out as by a wedge.
 
-Over a line of the face that is square to the axis, two points have what the round presses there (`_line`).
-Along the axis such lines are added up by Gauss' rule. Where a joint stands oblique to the roller, the
-pressure begins and ends at it, so that the sum is taken over pieces, from where an edge of the face comes
-into the nip to where it leaves it. Boxes on both sides of that joint then add up to what one sheet has.
+On a line of the face perpendicular to the axis, two points represent the pressure of the round (`_line`).
+Along the axis such lines are summed by Gauss' rule. At a joint oblique to the roller the pressure begins and
+ends. So the sum is over pieces, from the place where an edge of the face enters the nip to where it leaves
+it. Then boxes on both sides of that joint add up to the force on one sheet.
 """
 
 from __future__ import annotations
@@ -63,7 +63,7 @@ from mdlgen.mechanics.point import (
 from mdlgen.mechanics.vector import add, cross, dot, local, rotate, scale, sub
 from mdlgen.program.kernel import BORROWS, FUSED, njit
 
-WHOLE = 4.0  # no sector but the whole round: more than half a turn
+WHOLE = 4.0  # the whole round instead of a sector: more than half a turn
 _THIRD = math.sqrt(0.6)
 # An end of a roller stands on all boxes that are nearer to it along the axis than this part of its width.
 EASE = 0.003
@@ -77,7 +77,7 @@ _WIDE, _NARROW = 0.5 + math.sqrt(30.0) / 36.0, 0.5 - math.sqrt(30.0) / 36.0
 
 @njit(cache=True, error_model="numpy", forceinline=True)
 def _at_two(middle, apart, of, off):
-    """What presses across and along a face at two places of a round, beside the middle between them."""
+    """Pressure across and along a face at two places of a round, at equal distances from their middle."""
     across = along = 0.0
     for side in (-1.0, 1.0):
         t = middle + side * apart
@@ -89,7 +89,7 @@ def _at_two(middle, apart, of, off):
 
 @njit(cache=True, error_model="numpy", forceinline=True)
 def _over(left, right, of, off):
-    """Integral from left to right of what a round presses across a face, half the length times that."""
+    """Integral from left to right of the pressure of a round across a face."""
     middle, half = 0.5 * (left + right), 0.5 * (right - left)
     inner, _ = _at_two(middle, _INNER * half, of, off)
     outer, _ = _at_two(middle, _OUTER * half, of, off)
@@ -98,8 +98,9 @@ def _over(left, right, of, off):
 
 @njit(cache=True, error_model="numpy", **BORROWS)
 def _part_of_nip(left, right, reach, of, off):
-    """Factor of the forces, and angle to turn the normals by, of two points for a part of a nip, so that all
-    parts of it add up to what two points have of the whole, and push nothing along faces that go on as one.
+    """Factor of the forces, and angle of rotation of the normals, of two points for a part of a nip. With
+    these all parts add up to the forces of two points for the whole nip, without a force along a continuous
+    face.
 
     Along a face the pressure zeta of a round adds up to the difference of zeta^2/2 at both ends.
     """
@@ -197,9 +198,9 @@ def press(out, face, a, half, b, roller, sector, law):
 
 @njit(cache=True, error_model="numpy", **BORROWS)
 def _rim(out, face, a, half, b, seen, law, u, stiffness):
-    """The force of an end of the roller, at u along its axis, on the face: the energy per length there, along
-    the axis, outward. It is damped as the nip is, so that a sheet that meets it is not thrown aside either.
-    `stiffness` is that per length, below zero at the low end."""
+    """Force of an end of the roller, at u along its axis, on the face: the energy per length there, along the
+    axis, outward. It is damped like the nip, so that a sheet that meets it is not thrown aside. `stiffness`
+    is that per length, below zero at the low end."""
     lie = lie_of(seen, face, half, True, u)
     if lie.depth <= 0.0:
         return
@@ -220,7 +221,7 @@ def _rim(out, face, a, half, b, seen, law, u, stiffness):
 
 @njit(cache=True, error_model="numpy", forceinline=True, **BORROWS, **FUSED)
 def _line(out, face, a, half, b, seen, law, u, weight):
-    """What a round presses on the line of a face at u along its axis, which has `weight` of the stiffness."""
+    """Adds the force of a round on the line of a face at u along its axis, with `weight` of the stiffness."""
     lie = lie_of(seen, face, half, law.shared, u)
     if lie.depth <= 0.0:
         return
@@ -252,7 +253,7 @@ def _line(out, face, a, half, b, seen, law, u, weight):
     if spread and (left > -reach or right < reach):
         factor, turned = _part_of_nip(left, right, reach, of, off)
         turned *= draw
-    # where what presses on this box has its middle
+    # middle of the pressure on this box
     center = draw * (middle_t + apart * (high_zeta - low_zeta) / (high_zeta + low_zeta))
     for point in range(2 if spread else 1):
         t = nearest

@@ -1,12 +1,12 @@
 """Loads and gravity that have a factor over time, linear between corners and constant beyond them.
 
-`set_to` writes what acts in a span of time into the records of loads and into gravity, where all else reads
-it. In a step of the midpoint rule that is the mean over the step: so a step changes the momentum of a body by
-the impulse of the force, however steep a ramp is and wherever a corner lies. A span of no length has the
-value at its time.
+`set_to` writes the mean over a span of time into the records of loads and into gravity, from which all other
+code reads it. The span is a step of the midpoint rule: so a step changes the momentum of a body by the
+impulse of the force, for any slope of a ramp and any place of a corner. A span of no length has the value at
+its time.
 
-Corners stand in the fields `corners` and `drive` of a law, as those of a driven roller do (see driven), and
-are read at each call.
+Corners are in the fields `corners` and `drive` of a law, like those of a driven roller (see driven), and are
+read at each call.
 """
 
 from __future__ import annotations
@@ -20,23 +20,23 @@ from mdlgen.model.tables import Model
 from mdlgen.program.kernel import njit
 
 GRAVITY = -1
-# A factor: of which entry of the loads, or GRAVITY.
+# A factor over time: its entry of the loads, or GRAVITY.
 LAW = np.dtype([("entry", "i8"), *DRIVE])
-# What it multiplies: the row of a load, or GRAVITY; the number of its law; force and moment, or gravity and
-# nothing, at a factor of 1.
+# A quantity with such a factor: the row of a load, or GRAVITY; the number of its law; force and moment, or
+# gravity and zeros, at a factor of 1.
 ACTS = np.dtype([("load", "i8"), ("law", "i8"), ("full", "f8", 6)])
 
 
 class Changing(NamedTuple):
-    """What changes over time; no laws: nothing does."""
+    """Quantities that change over time; no laws: none does."""
 
     laws: np.ndarray  # LAW, that of gravity first
     acts: np.ndarray  # ACTS
 
 
 def changing(model: Model, loads: np.ndarray, gravity: np.ndarray, time: float = 1.0) -> Changing:
-    """Of a Model with its loads and gravity in a solver's units, at a factor of 1, `time` being a millisecond
-    there; in a static analysis nothing changes. Leaves those of time 0 there."""
+    """The Changing of a Model with its loads and gravity in a solver's units, at a factor of 1; `time` is a
+    millisecond there. In a static analysis nothing changes. Sets loads and gravity to those of time 0."""
     profiles = {GRAVITY: model.gravity_profile} if len(model.gravity_profile) else {}
     profiles |= {entry: model.loads.profiles[entry] for entry in model.loads.changing}
     laws = np.zeros(len(profiles), LAW)
@@ -51,7 +51,7 @@ def changing(model: Model, loads: np.ndarray, gravity: np.ndarray, time: float =
             rows.append((row, number, [*loads["force"][row].tolist(), *loads["moment"][row].tolist()]))
     acts = np.array(rows, ACTS) if rows else np.zeros(0, ACTS)
     for act in acts:
-        now = float(laws["drive"][act["law"], 1]) * act["full"]  # that of the first corner
+        now = float(laws["drive"][act["law"], 1]) * act["full"]  # value of the first corner
         if act["load"] == GRAVITY:
             gravity[:] = now[:3]
         else:
@@ -63,7 +63,7 @@ def changing(model: Model, loads: np.ndarray, gravity: np.ndarray, time: float =
 
 @njit(cache=True, error_model="numpy")
 def mean_factor(law, begin, end):
-    """Mean of a factor from one time to another; where they are the same, the factor then."""
+    """Mean of a factor from one time to another; for equal times, the factor at that time."""
     before = prescribed(law, begin)
     if not end > begin:
         return before
@@ -77,7 +77,7 @@ def mean_factor(law, begin, end):
 
 @njit(cache=True, error_model="numpy")
 def set_to(changes, loads, gravity, begin, end):
-    """Writes what acts on average from one time to another into `loads` and `gravity`."""
+    """Writes the means from one time to another into `loads` and `gravity`."""
     for k in range(changes.acts.size):
         row, full = changes.acts[k].load, changes.acts[k].full
         factor = mean_factor(changes.laws[changes.acts[k].law], begin, end)
@@ -91,5 +91,5 @@ def set_to(changes, loads, gravity, begin, end):
 
 @njit(cache=True, error_model="numpy", forceinline=True)
 def weight_changes(changes):
-    """Whether gravity does: then weight has no potential, and its work is counted as that of a load."""
+    """True if gravity changes: then weight has no potential, and its work is counted as that of a load."""
     return changes.laws.size > 0 and changes.laws[0].entry < 0

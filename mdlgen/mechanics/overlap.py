@@ -1,15 +1,15 @@
-"""The overlap of two boxes' faces, kept while the boxes hardly move along them.
+"""The overlap of two boxes' faces, cached while the boxes hardly move along them.
 
-Boxes of two sheets that lie on each other move across their faces by what their contact gives, and along them
-by what slides. Which corners the overlap has (mechanics.facing), and what each stands for, follows from the
-latter alone, and costs ten times as much as the force of them. So it is kept with the pair, in the axes of
-the face that owns the contact; the depth of a corner, its place and its normal are those of the boxes as they
-stand. It is found anew where a corner of the other face may have moved along the owner by more than the part
-MOVED of the least half length of both, seen from where it was found.
+Boxes of two sheets that lie on each other move across their faces as the contact deforms, and along them as
+they slide. The corners of the overlap (mechanics.facing), and the area of each, depend on the latter alone,
+and cost ten times as much as the force. So they are cached with the pair, in the axes of the face that owns
+the contact. The depth of a corner, its place and its normal are those of the present boxes. The overlap is
+recomputed after a corner of the other face may have moved along the owner by more than MOVED times the least
+half length of both.
 
-Faces whose outlines are apart have none, nor have boxes that are clear of each other when they are looked at.
-What is not face on face - a side of a box owns the contact, since it overlaps by less than the faces do, or a
-box stands on its edge - is left to `facing.box_box` each time.
+Faces whose outlines are apart have no overlap, nor have boxes that are apart when they are checked.
+`facing.box_box` evaluates all other cases each time: a side of a box owns the contact, since it overlaps by
+less than the faces do, or a box stands on its edge.
 """
 
 from __future__ import annotations
@@ -37,32 +37,32 @@ from mdlgen.mechanics.point import (
 from mdlgen.mechanics.vector import add, back, cross, dot, rotate, sub, transpose_matmul
 from mdlgen.program.kernel import BORROWS, FUSED, OWNS, njit
 
-# What a pair may have: nothing yet, outlines that are apart, an overlap, something else.
+# States of a pair: not known yet, outlines apart, an overlap, another case.
 UNKNOWN, APART, OVERLAPS, OTHER = 0, 1, 2, 3
-MOST_CORNERS = 8  # of a rectangle that is cut by another
-# What is read of a pair stands together, and what is small is small: piles of sheets have very many.
+MOST_CORNERS = 8  # corners of the intersection of two rectangles.
+# A compact record, since piles of sheets have very many.
 OVERLAP = np.dtype(
     [
-        ("place", "f4", 2),  # of the other box along the owner's face when it was found [mm]
-        ("turn", "f4", 4),  # and the directions of its faces' edges there
-        ("wide", "f4", 2),  # half lengths of the other box along them [mm]
-        ("allowed", "f4"),  # how far its corners may have moved along the owner's face since [mm]
-        ("most", "f4"),  # depth up to which faces own the contact [mm]
-        ("look", "i4"),  # for who keeps it: when it was last seen to hold
+        ("place", "f4", 2),  # place of the other box along the owner's face when it was computed [mm].
+        ("turn", "f4", 4),  # directions of its faces' edges there.
+        ("wide", "f4", 2),  # half lengths of the other box along them [mm].
+        ("allowed", "f4"),  # bound on the motion of its corners along the owner's face since then [mm].
+        ("most", "f4"),  # depth up to which faces own the contact [mm].
+        ("look", "i4"),  # number of the caller's check in which it last held.
         ("state", "i1"),
-        ("count", "i1"),  # of corners
-        ("first", "i1"),  # whether the first box owns the contact, or parts outlines that are apart
-        ("side", "i1"),  # of the owner's face along its normal
-        ("behind", "f8"),  # half the thickness of the other box [mm]
-        ("thick", "f8"),  # half the thickness of the box whose face it is [mm]
-        ("corners", "f8", (MOST_CORNERS, 3)),  # in the owner's axes [mm], and their stiffness [N/mm^1.5]
+        ("count", "i1"),  # number of corners.
+        ("first", "i1"),  # 1 if the first box owns the contact, or separates outlines that are apart.
+        ("side", "i1"),  # side of the owner's face along its normal.
+        ("behind", "f8"),  # half the thickness of the other box [mm].
+        ("thick", "f8"),  # half the thickness of the box whose face it is [mm].
+        ("corners", "f8", (MOST_CORNERS, 3)),  # in the owner's axes [mm], and their stiffness [N/mm^1.5].
     ]
 )
 STIFF = 2  # column of the corners
-# Part of the least half length of both faces that one may have moved along the other since their overlap was
-# found. With 1e-2 within a step the error of notes that slide under a pad no longer falls with the step.
+# Motion of one face along the other since their overlap was computed, relative to the least half length of
+# both. With 1e-2 within a step the error of notes that slide under a pad no longer falls with the step.
 MOVED = 1e-5
-# What two boxes do by the overlap that is kept: nothing, press, or what facing.box_box makes of their sides.
+# Contact of two boxes by their cached overlap: none, pressure, or one of their sides (facing.box_box).
 CLEAR, PRESSES, BY_SIDES = 0, 1, 2
 EVER = 1e30
 STEEP = 0.75  # cosine of the angle between two faces beyond which they do not lie on each other
@@ -76,8 +76,8 @@ def _seen(owner, other):
 
 @njit(cache=True, error_model="numpy", **BORROWS, **FUSED)
 def holds(kept, a, b, more):
-    """Whether what is kept of two boxes (Frames) still is what they have, and will be while they move along
-    each other by less than `more` [mm]."""
+    """True if the cached overlap of two boxes (Frames) still holds, and will hold while they move along each
+    other by less than `more` [mm]."""
     if kept.state == UNKNOWN or kept.state == OTHER:
         return False
     place, turn = _seen(a, b) if kept.first != 0 else _seen(b, a)
@@ -86,15 +86,14 @@ def holds(kept, a, b, more):
         moved = abs(place[q] - kept.place[q])
         for i in range(2):
             moved += wide[i] * abs(turn[3 * q + i] - kept.turn[2 * q + i])
-        if not moved <= allowed:  # nor where it is not a number
+        if not moved <= allowed:  # also false for nan
             return False
     return True
 
 
 @njit(cache=True, error_model="numpy", **BORROWS, **FUSED)
 def apart(a, half_a, b, half_b, more):
-    """Whether two boxes (Frames) are clear of each other by more than `more` [mm] along one of their faces'
-    normals."""
+    """True if two boxes (Frames) are apart by more than `more` [mm] along one of their faces' normals."""
     gap = sub(b.x, a.x)
     for k in range(2):
         one, half, other, wide = (a, half_a, b, half_b) if k == 0 else (b, half_b, a, half_a)
@@ -108,7 +107,7 @@ def apart(a, half_a, b, half_b, more):
 
 @njit(cache=True, error_model="numpy", forceinline=True)
 def _seen_from(kept, place, turn, wide):
-    """Notes where a box with these half lengths was in the axes of the other one."""
+    """Stores the place of a box with these half lengths in the axes of the other one."""
     for q in range(2):
         kept.place[q], kept.wide[q] = place[q], wide[q]
         for i in range(2):
@@ -117,7 +116,7 @@ def _seen_from(kept, place, turn, wide):
 
 @njit(cache=True, error_model="numpy", **OWNS)
 def find(kept, a, one_box, b, two_box, law):
-    """What two boxes of two sheets have, into a record OVERLAP."""
+    """Computes the overlap of two boxes of two sheets into a record OVERLAP."""
     half_a, half_b = one_box.half, two_box.half
     place, turn = _seen(a, b)
     far, turned = _seen(b, a)
@@ -153,12 +152,12 @@ def find(kept, a, one_box, b, two_box, law):
         narrow = min(narrow, spread, across)
     if apart:
         thick = wide[2]
-        if beside > gap:  # it closes by what the one moves in the axes of the other box
+        if beside > gap:  # the larger gap is in the axes of the other box
             kept.first = 1 - kept.first
             place, turn = _seen(other, owner)
             _seen_from(kept, place, turn, half)
             gap, thick = beside, half[2]
-        # faces that lean reach as far out as they are thick
+        # an inclined face may extend beyond its outline by its thickness
         kept.allowed = max(allowed, 0.999 * gap - thick)
         return
     sides = one_box.exposed + two_box.exposed > 0 and narrow < 2.0 * thin
@@ -193,26 +192,27 @@ def plane_of(kept, owner, other):
 
 @njit(cache=True, error_model="numpy", forceinline=True)
 def moves(owner, other, place):
-    """How the owner moves against the other box, in the owner's axes: at a place p by the velocity + the
-    angular velocity x p; `place`: of the other box."""
+    """Velocity and angular velocity of the owner relative to the other box, in the owner's axes and for its
+    centre: a place p moves by the first + the second x p; `place`: that of the other box."""
     w, far = back(owner.r, owner.w), back(owner.r, other.w)
-    # of the velocity at a point p it is what does not turn: v + w x p - far x (p - place)
+    # the relative velocity at p is v + w x p - far x (p - place), of which the first result is the constant
+    # part
     return add(back(owner.r, sub(owner.v, other.v)), cross(far, place)), sub(w, far)
 
 
 @njit(cache=True, error_model="numpy", forceinline=True)
 def _closing(kept, rate, spin):
-    """How fast two faces close, from what `moves` has: at the middle of the owner's face, and its growth
-    along both of its edges."""
+    """Closing rate of two faces, from the results of `moves`: at the middle of the owner's face, and its
+    growth along both of its edges."""
     return kept.side * rate[2], -kept.side * spin[1], kept.side * spin[0]
 
 
 @njit(cache=True, error_model="numpy", **BORROWS, **FUSED)
 def impact(kept, a, b, faster, law, dt):
-    """What the kept overlap of two boxes (Frames) stores in a step of dt beyond the work done on it, and what
-    its damping should have taken and did not [N mm]; see mechanics.impacts.
+    """Energy that the cached overlap of two boxes (Frames) stores in a step of dt beyond the work done on it,
+    and energy that its damping missed [N mm]; see mechanics.impacts.
 
-    faster: of both boxes what their velocity and their angular velocity change by in half of the step.
+    faster: changes of the velocity and the angular velocity of both boxes in half of the step.
     """
     first = kept.first != 0
     owner, other = (a, b) if first else (b, a)
@@ -241,9 +241,9 @@ def impact(kept, a, b, faster, law, dt):
 
 @njit(cache=True, error_model="numpy", **BORROWS, **FUSED)
 def press(out, kept, a, b, law):
-    """The contact of two boxes (Frames) by the overlap that is kept, into `out` (see mechanics.point), worked
-    out in the owner's axes and without its points. Returns CLEAR, PRESSES or BY_SIDES; `out` is set where
-    they press."""
+    """Writes the contact of two boxes (Frames) by their cached overlap into `out` (see mechanics.point),
+    evaluated in the owner's axes and without its points. Returns CLEAR, PRESSES or BY_SIDES; `out` is set
+    where they press."""
     first = kept.first != 0
     owner, other = (a, b) if first else (b, a)
     place, level, lean_p, lean_r = plane_of(kept, owner, other)
@@ -254,7 +254,7 @@ def press(out, kept, a, b, law):
         return CLEAR
     if deepest > kept.most:
         return BY_SIDES
-    way = -kept.side  # of the owner's normal, from the other box to it
+    way = -kept.side  # sign of the owner's normal, from the other box to it
     rate, spin = moves(owner, other, place)
     force, torque = (0.0, 0.0, 0.0), (0.0, 0.0, 0.0)
     pressing = stored = lost = rubbing = 0.0

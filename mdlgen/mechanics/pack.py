@@ -1,6 +1,6 @@
 """A Model's bodies, bushings, pairs and loads as records, in a solver's units and in its layout of records.
 
-Rows of bodies are those of the Model; one more, the last, is the ground, which -1 names.
+Rows of bodies are those of the Model; an additional one, the last, is the ground, which has the number -1.
 """
 
 from __future__ import annotations
@@ -28,7 +28,7 @@ from mdlgen.model.tables import GROUND, Floats, Frictions, Ints, Model, Press
 
 
 class Units(NamedTuple):
-    """What a Model's units are in a solver's, where a newton stays one; the Model's own by default."""
+    """Units of a Model in those of a solver, where a newton stays one; by default the Model's own."""
 
     mm: float = 1.0
     per_mm: float = 1.0
@@ -93,7 +93,7 @@ def pack_bodies(model: Model, layout: np.dtype, units: Units = OWN, driven: bool
 
 
 def _press(row: np.void, spring: Press, mass: float, units: Units) -> None:
-    """Of what slides on a spring: its way, and the spring's numbers."""
+    """Sets the direction of a body that slides on a spring, and the spring's numbers."""
     row["way"] = spring.direction
     force = spring.preload - spring.stiffness * (spring.start - spring.touch)
     stiffness, damping = spring.stiffness * units.per_mm, spring.damping * units.ms * units.per_mm
@@ -103,7 +103,7 @@ def _press(row: np.void, spring: Press, mass: float, units: Units) -> None:
 
 
 def _turn_together(model: Model, bodies: np.ndarray, inertia: float, driven: bool) -> None:
-    """Numbers the axles of rollers, and gives those that lead the inertia of all that turns with them;
+    """Numbers the axles of rollers, and gives leaders the inertia of all rollers that turn with them;
     `inertia` is 1 g mm^2 in the solver's units."""
     axles = 0
     for roller in model.rollers:
@@ -129,7 +129,7 @@ def number(model: Model, bodies: np.ndarray, first: int, turning: bool = True) -
         row = bodies[roller.body]
         if roller.press is not None or roller.arm is not None:
             row["slide"], first = first, first + 1
-        if turning and roller.leader >= 0:  # which has a number: it is the first of its shaft by name
+        if turning and roller.leader >= 0:  # the leader has a number: it is the first of its shaft by name
             row["spin"] = bodies["spin"][roller.leader]
         elif turning and roller.turns:
             row["spin"], first = first, first + 1
@@ -163,7 +163,7 @@ def pack_bushings(model: Model, layout: np.dtype, order: Ints, units: Units = OW
 
 
 def pack_pairs(model: Model, layout: np.dtype, chosen: Ints, units: Units = OWN) -> np.ndarray:
-    """Records of the kept pairs `chosen`, with the friction of their own."""
+    """Records of the kept pairs `chosen`, with their own friction."""
     pairs = pack_laws(model, layout, model.pairs.contact[chosen], units)
     mesh, other = mesh_numbers(model)
     pairs["a"], pairs["b"], pairs["mesh"] = model.pairs.a[chosen], other[chosen], mesh[chosen]
@@ -189,14 +189,14 @@ def pack_laws(model: Model, layout: np.dtype, chosen: Ints, units: Units = OWN) 
         pairs["law"][:, column] = values[chosen]
     if rows.frictions is not None:
         pairs["measured"] = np.where(in_rows(rows.frictions), np.arange(1, len(rows) + 1), 0)[chosen]
-        # a table of speeds is all that mu goes with the speed by
+        # with a table of speeds mu depends on the speed by that table alone
         tabled = rows.frictions.points[chosen] > 0
         pairs["law"][tabled, LAW_DYNAMIC] = pairs["law"][tabled, LAW_STATIC]
     return pairs
 
 
 def in_rows(frictions: Frictions) -> NDArray[np.bool_]:
-    """Whether the laws of a contact have more to read than its coefficients, (contacts,)."""
+    """True for contacts whose laws use more than two coefficients of friction, (contacts,)."""
     factors = np.concatenate([frictions.direction, frictions.face], axis=1)
     return (factors != 1.0).any(axis=1) | (frictions.points > 0) | (frictions.pressure[:, 1] != 0.0)
 

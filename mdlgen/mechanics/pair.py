@@ -1,4 +1,4 @@
-"""One contact pair of a solver's tables: what its law does, whether it may touch, and what it is to remember.
+"""One contact pair of a solver's tables: its force, the check that it may touch, and its memory.
 
 The kinds of pairs are in mechanics.pairs, where `bodies`, `pair`, `shapes` and `motion` are described.
 """
@@ -31,18 +31,18 @@ rolls = by_kind(__name__, "rolling", otherwise=((0.0, 0.0, 0.0), 0.0))
 
 @njit(cache=True, error_model="numpy", forceinline=True)
 def on_fixed_plate(pair, other):
-    """Whether the other part, of that record, is a plate that does not move."""
+    """True if the other part of a pair, with the record `other`, is a plate that does not move."""
     return on_plate(pair) and other.slide < 0
 
 
 def before_an_end(pair: np.void) -> bool:
-    """Whether a pair is of a box of which a side stands before an end of a plate."""
+    """True if a side of the box of a pair stands before an end of its plate."""
     return int(pair["kind"]) in _ON_PLATES and int(pair["beside"]) != 0
 
 
 @njit(cache=True, error_model="numpy", **BORROWS, **CALLED)
 def _press_again(half, row, out):
-    """Takes the pressure on a box's face from what its pair does, which is then taken out again."""
+    """Sets the pressure on a box's face from the force of its pair, and resets that force."""
     by_pressure(out, row, out[PRESSING] / (4.0 * half[0] * half[1]))
     for i in range(FORCE_A, HOLDS):
         out[i] = 0.0
@@ -59,7 +59,7 @@ def pair_force(bodies, pair, shapes, motion, out):
         lay_measured(out, shapes.frictions[pair.measured - 1], motion.r, pair.a)
     touches = _force(bodies, pair, shapes, motion, out)
     while touches and out[MEASURED] > 1.0:
-        # the normal force, which friction goes with, is known now
+        # the normal force, on which friction depends, is known now
         _press_again(bodies[pair.a].half, shapes.frictions[pair.measured - 1], out)
         touches = _force(bodies, pair, shapes, motion, out)
     if pair.law[LAW_ROLLING] > 0.0 and out[PRESSING] > 0.0:
@@ -72,11 +72,11 @@ def pair_force(bodies, pair, shapes, motion, out):
 
 @njit(cache=True, error_model="numpy", **BORROWS)
 def remember(bodies, pairs, shapes, motion):
-    """Notes what pairs remember of the places that a step, or a run, begins with: of a box and a plate which
-    outer sides of the box stand before which end of the plate (see mechanics.edge), of others what their kind
-    notes."""
+    """Updates the memory of pairs from the places at the beginning of a step, or a run. A box and a plate
+    store the ends of the plate before which outer sides of the box stand (see mechanics.edge); others store
+    the value of their kind."""
     for p in range(pairs.size):
-        if pairs[p].kind < 0:  # from here on there is room only
+        if pairs[p].kind < 0:  # the rest is unused rows
             break
         if _notes(pairs[p]):
             pairs[p].beside = _noted(bodies, pairs[p], shapes, motion)

@@ -1,10 +1,10 @@
 """Bending of a joint beyond its yield moment: a plastic hinge with kinematic hardening.
 
-The rotation vector theta of a joint has one component t that bends the sheet. Of t the part p is plastic:
+The rotation vector theta of a joint has one component t that bends the sheet. Its part p is plastic:
 
     M = k (t - p),    |M - H p| <= M_y,    dp has the sign of M - H p.
 
-k: the elastic stiffness of the bushing, M_y: its yield moment, H: how the moment grows with p. From M_y on
+k: the elastic stiffness of the bushing, M_y: its yield moment, H: growth of the moment with p. From M_y on
 the moment grows with t by k H/(k + H); it unloads by k. H p is the back moment: reversed yielding begins
 where the moment has changed by 2 M_y. This is the law of Prager with linear hardening, in one dimension (Simo
 and Hughes, Computational Inelasticity, sections 1.2 and 1.4; the return mapping is Box 1.5 there).
@@ -18,7 +18,7 @@ t = 2 t_m - t_0: the moment is exact where nothing yields, and its growth with t
 M (t - t_0) of the step is the growth of k (t - p)^2/2 + H p^2/2, and (x_0 + x')/2 (p' - p), which is
 dissipated. It is not negative, since x' = M_y sign(p' - p) and |x_0| <= M_y.
 
-The bushing has k theta for a torque (mechanics.bushing). What is here is added to that: the torque of -k p.
+The torque of the bushing is k theta (mechanics.bushing). This module adds the torque of -k p.
 """
 
 from __future__ import annotations
@@ -42,7 +42,7 @@ from mdlgen.program.kernel import BORROWS, njit
 HINGE = np.dtype(
     [
         ("joint", "i8"),  # number of it
-        ("axis", "i8"),  # of its frame that the sheet bends about, 0: x, 1: y
+        ("axis", "i8"),  # axis of its frame about which the sheet bends, 0: x, 1: y
         ("k", "f8"),  # [N mm/rad]
         ("moment", "f8"),  # M_y [N mm]
         ("hardening", "f8"),  # H [N mm/rad]
@@ -89,7 +89,7 @@ def yields(hinge, t):
 
 @njit(cache=True, error_model="numpy", **BORROWS)
 def accept(hinge, begun, t):
-    """Ends a step from the rotation `begun` to t: changes p. Returns what it dissipates [N mm]."""
+    """Ends a step from the rotation `begun` to t: changes p. Returns the dissipated energy [N mm]."""
     after = flowed(hinge, t)
     change = after - hinge.plastic
     if change == 0.0:

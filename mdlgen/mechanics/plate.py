@@ -2,8 +2,8 @@
 
 The corners of the part of the box's face that lies over the plate share k, so a flat box gives k z^1.5. With
 `share: width` a guide has the part of k that it covers of the box's face; a plane has all of it wherever the
-box lies. A plate is a slab: the face that a box meets is the one on the side of the plate that it is on. At a
-free end a box that slopes down beyond it passes from the face's law to that of the edge, see mechanics.edge.
+box lies. A plate is a slab: a box touches the face on its own side of the plate. At a free end the law of a
+box that slopes down beyond it passes from that of the face to that of the edge, see mechanics.edge.
 """
 
 from __future__ import annotations
@@ -74,7 +74,7 @@ def corner_areas(points, count, areas):
 
 @njit(cache=True, error_model="numpy", forceinline=True)
 def facing(facing, ra):
-    """Normal, into the box, of its face that looks along -`facing` (box axes), global."""
+    """Normal, into the box, of its face that looks along -`facing` (box axes); global."""
     q = looking(facing)
     return scale(1.0 if facing[q] > 0.0 else -1.0, (ra[q], ra[3 + q], ra[6 + q]))
 
@@ -98,7 +98,7 @@ def box_ends(out, a, box, b, plate, law):
 def box_flat(out, a, box, b, plate, covered, law):
     """Box a on a flat plate b, whose axes are those of a guide.
 
-    covered: whether k goes with the part of the box's face that the plate covers.
+    covered: true if k is proportional to the part of the box's face that the plate covers.
     """
     half, half_b, top = box.half, plate.half, plate.top
     ends, edge = plate.ends, plate.edge
@@ -115,7 +115,7 @@ def box_flat(out, a, box, b, plate, covered, law):
     if plate.beside != 0 and not inside:
         box_ends(out, a, box, b, plate, law)
         return
-    # on which side of the sheet's middle the plate is
+    # side of the sheet's middle on which the plate is
     upright = back(rb, (ra[2], ra[5], ra[8]))
     near = (
         min(max(at[0], -half_b[0]), half_b[0]),
@@ -174,7 +174,7 @@ def box_flat(out, a, box, b, plate, covered, law):
                 continue
             point = add(b.x, rotate(rb, (points[i, 0], points[i, 1], points[i, 2])))
             push(out, point, rotate(rb, way), Load(spring, depth, 0.4 * spring * depth), a, b, law)
-            if ends != 0:  # the part that the face has of k falls as the box turns
+            if ends != 0:  # the part of k on the face decreases as the box turns
                 turn(out, rotate(rb, scale(-0.4 * depth * depth * math.sqrt(depth), cross(inward, slope))))
     if ends != 0:
         box_ends(out, a, box, b, plate, law)
@@ -182,14 +182,15 @@ def box_flat(out, a, box, b, plate, covered, law):
 
 @njit(cache=True, error_model="numpy", forceinline=True)
 def _inset(point, i, half_b):
-    """How far inside of the end i of a straight plate a point is."""
+    """Distance of a point inside of the end i of a straight plate."""
     sign = 1.0 if i % 2 == 0 else -1.0
     return half_b[0] - sign * point[0] if i < 2 else half_b[1] - sign * point[2]
 
 
 @njit(cache=True, error_model="numpy")
 def _drawn(points, count, half_b, ends, radius):
-    """What of k a plate that does not count what it covers has left of a sliver at a free end."""
+    """Factor of k for a narrow overlap at a free end, of a plate whose k does not depend on the covered
+    part."""
     left = 1.0
     for i in range(4):
         if ends & (1 << i) != 0:
@@ -202,9 +203,9 @@ def _drawn(points, count, half_b, ends, radius):
 
 @njit(cache=True, error_model="numpy")
 def _near_end(point, half_b, ends, overs, radius, inward, normal, share):
-    """(part of k, normal, growth of the part with the normal of the box's face) of a corner of what lies over
-    the plate: at a free end beyond which the box slopes down the edge takes over, with the normal of the
-    box's face. overs: see edge.hands_over, for each end."""
+    """(part of k, normal, growth of the part with the normal of the box's face) of a corner of the overlap.
+    At a free end beyond which the box slopes down the law passes to the edge, with the normal of the box's
+    face. overs: see edge.hands_over, for each end."""
     weight, way, slope = share, normal, (0.0, 0.0, 0.0)
     for i in range(4):
         if ends & (1 << i) == 0:

@@ -1,6 +1,6 @@
 """Fields of the records that the force laws read: of a body, a joint, a pair of bodies, a load.
 
-A solver's record has these, by name, and beside them what it numbers its unknowns by.
+A solver's record has these, by name, and in addition the numbers of its unknowns.
 """
 
 from __future__ import annotations
@@ -15,12 +15,12 @@ from mdlgen.mechanics.frame import LAW
 from mdlgen.mechanics.gate import STOPS
 from mdlgen.mechanics.rim import RIM
 
-# Of a body. What every step reads of every box stands first: there may be thousands.
+# Fields of a body. Those that every step reads of every box are first: there may be thousands.
 OF_BODY = [
     ("mass", "f8"),
     ("inertia", "f8", 3),
-    ("half", "f8", 3),  # of a box; of a guide: half of its length, width and thickness
-    ("exposed", "i8"),  # of a box: its side faces without a neighbour, as a bit mask
+    ("half", "f8", 3),  # half lengths of a box; of a guide: half of its length, width and thickness
+    ("exposed", "i8"),  # side faces of a box without a neighbour, as a bit mask
     # of a roller, and of what slides
     ("axis", "f8", 3),
     *CLUTCH,
@@ -28,7 +28,7 @@ OF_BODY = [
     *ARM,
     ("way", "f8", 3),  # direction of a slide
     ("size", "f8", 2),  # radius, of a rim the greatest, and width
-    ("carries", "i8"),  # 1: a roller with a mesh on it, whose turn is followed
+    ("carries", "i8"),  # 1: a roller with a mesh on it, whose rotation is followed
     *RIM,
     # of a plate
     ("arc", "f8", 3),  # of a guide: radius (0: straight), middle angle, half angle
@@ -37,7 +37,7 @@ OF_BODY = [
     *DRIVE,  # of what a law of its place moves, too, see mechanics.gate
     *STOPS,  # of what slides or turns freely
     ("coupled", "i8"),  # of a roller on a shaft: ALONE, LEADER, FOLLOWER
-    ("ratio", "f8"),  # and its turns for one of the roller that leads, 1: it leads or is alone
+    ("ratio", "f8"),  # rotation per rotation of its leader, 1: it leads or is alone
 ]
 # A roller whose spin is its own; one that leads a shaft, and has the inertia of all; one that follows it.
 ALONE, LEADER, FOLLOWER = 0, 1, 2
@@ -53,13 +53,13 @@ BODIES = [("kind", "i8"), ("a", "i8"), ("b", "i8")]
 CONTACT = [
     ("shared", "i8"),
     ("mesh", "i8"),  # number of it
-    # what it remembers: sides of the box that stand before ends of a plate (mechanics.edge), or which of its
-    # faces presses alone on a mesh (mechanics.mesh)
+    # memory of the pair: sides of the box that stand before ends of a plate (mechanics.edge), or its face
+    # that presses alone on a mesh (mechanics.mesh)
     ("beside", "i8"),
-    ("spread", "f8"),  # radius of the round that a roller's force is spread as, 0: its own
+    ("spread", "f8"),  # radius of the round that defines a roller's pressure, 0: its own
     ("k", "f8"),
     ("law", "f8", LAW),  # columns as in mechanics.frame
-    ("measured", "i8"),  # row of Shapes.frictions, from 1 on; 0: the law's numbers are all there is
+    ("measured", "i8"),  # row of Shapes.frictions, from 1 on; 0: the law's numbers alone
 ]
 
 LOAD = np.dtype([("body", "i8"), ("local", "f8", 3), ("force", "f8", 3), ("moment", "f8", 3)])

@@ -1,14 +1,14 @@
 """Contact with rollers whose rim is in sectors, each with its own radius, friction, stiffness, restitution.
 
-With phi the angle of the rim that looks at a flat face, the elastic energy is that of a roller of radius
-h(phi) and stiffness k(phi), h being the support function (see model.rims). So the force acts where a real rim
-touches: h'(phi) beside the point below the axis, at the edge of a sector where it is one that touches; and
-the roller bears the torque that a stiffness growing with phi makes. What the sectors store, they give back.
+Let phi be the angle of the rim that looks at a flat face, and h the support function (see model.rims). The
+elastic energy is that of a roller of radius h(phi) and stiffness k(phi). So the force acts where a real rim
+touches: at the distance h'(phi) from the point below the axis, which is the edge of a sector where that
+touches. A stiffness that grows with phi causes a torque on the roller. The sectors return all stored energy.
 
-A body record has `rims`, how many pieces its rim has (0: it is round); `rim`, the row of the first one in
-the table of all pieces; and `blend`, half of the angle over which one goes over into the next. A row of the
-table has PIECE numbers: angle where the piece begins, radius, angle of the edge that is touched (nan: the
-arc), stiffness and friction in times those of the contact, and the share beta of damping (negative: that of
+A body record has `rims`, the number of pieces of its rim (0: it is round); `rim`, the row of the first one in
+the table of all pieces; and `blend`, half of the angle over which one passes into the next. A row of the
+table has PIECE numbers: angle where the piece begins; radius; angle of the edge that is touched (nan: the
+arc); stiffness and friction relative to those of the contact; the share beta of damping (negative: that of
 the contact).
 """
 
@@ -67,7 +67,7 @@ def _rows(part: RimPart, length: float) -> Floats:
 
 @njit(cache=True, error_model="numpy")
 def _piece(rims, at, angle, beta):
-    """Of the piece in a row, at an angle: (h, h', stiffness, friction, share of damping)."""
+    """Values of the piece in a row, at an angle: (h, h', stiffness, friction, share of damping)."""
     radius, edge, own = rims[at, _RADIUS], rims[at, _EDGE], rims[at, _DAMPING]
     damping = own if own >= 0.0 else beta
     if math.isnan(edge):
@@ -84,8 +84,9 @@ def _piece(rims, at, angle, beta):
 
 @njit(cache=True, error_model="numpy")
 def profile(body, rims, angle, beta):
-    """At an angle of a body's rim, whose pieces are in the table `rims`: (h, h', stiffness and friction in
-    times the contact's, the growth of the former per rad, share of damping); `beta` is the contact's."""
+    """Values at an angle of a body's rim, whose pieces are in the table `rims`: (h, h', stiffness and
+    friction relative to the contact's, growth of the former per rad, share of damping); `beta` is the
+    contact's."""
     count, first = body.rims, body.rim
     angle = angle - TURN * math.floor(angle / TURN)
     i = count - 1
@@ -97,7 +98,7 @@ def profile(body, rims, angle, beta):
     behind = angle - begin < end - angle
     j = (i - 1 if behind else i + 1) % count
     wide = (rims[first + j + 1, _BEGIN] if j + 1 < count else TURN) - rims[first + j, _BEGIN]
-    # a piece may be narrower than what its ends are blended over
+    # a piece may be narrower than the angles over which its ends are blended
     half = min(body.blend, 0.5 * (end - begin), 0.5 * wide)
     away = angle - begin if behind else end - angle
     if away >= half:
@@ -126,7 +127,7 @@ def _angle(rb, way):
 
 @njit(cache=True, error_model="numpy", forceinline=True)
 def _facing(l0, al, half, exposed):
-    """Direction from the axis to the face that `box_sector` has it meet, in box axes; l0, al: the roller's
+    """Direction from the axis to the face that it touches by `box_sector`, in box axes; l0, al: the roller's
     centre and axis."""
     if abs(l0[2]) > half[2] and abs(al[2]) <= 0.98:
         return (0.0, 0.0, -math.copysign(1.0, l0[2]))
@@ -145,7 +146,7 @@ def box_rim(out, a, box, b, body, rims, law):
     aside = scale(lever, cross(axis, face))
     roller, own = Cylinder(axis, h, body.size[WIDTH]), scaled(law, stiff, rough, damping)
     box_sector(out, a, box, b, roller, Sector(axis, WHOLE, aside, True), own)
-    # a stiffness that grows with the angle turns the roller on, and the box back
+    # a stiffness that grows with the angle turns the roller forwards, and the box backwards
     torque = out[STORED] * growth / stiff
     for i in range(3):
         out[TORQUE_A + i] -= torque * axis[i]
@@ -154,7 +155,7 @@ def box_rim(out, a, box, b, body, rims, law):
 
 @njit(cache=True, error_model="numpy")
 def _towards(body, rims, r, way, beta):
-    """What `profile` has of a roller along a direction; a round one has its radius, and factors of 1."""
+    """Values of `profile` for a roller along a direction; a round one has its radius, and factors of 1."""
     if body.rims == 0:
         return body.size[RADIUS], 0.0, 1.0, 1.0, 0.0, beta
     return profile(body, rims, _angle(r, way), beta)
@@ -165,7 +166,7 @@ def rim_rim(out, a, one, b, two, rims, law):
     """As `contact.cylinder_cylinder` for two rollers with records `one` and `two`, of which one has a rim, in
     the table `rims`.
 
-    An edge counts as against a flat face, so it comes a little earlier than it would on the other's round.
+    An edge acts as on a flat face, so it touches a little earlier than it would on the other's round.
     """
     axis, other = three(one.axis), three(two.axis)
     gap = sub(b.x, a.x)

@@ -1,17 +1,18 @@
 """Contact of a roller with a mesh of triangles: F = k z^1.5, z the depth of the mesh in the roller's round.
 
-The width is looked at in SLICES planes square to the axis, each with its part of k. Triangles cut a slice in
-straight pieces; those whose outer side the axis is on, and that come into the circle, make patches, one for
-each run of pieces that hang together. With zeta = (R^2 - rho^2)/2R, rho the distance of a point from the
-axis, the depth of a patch is
+The width is evaluated in SLICES planes perpendicular to the axis, each with its part of k. Triangles cut a
+slice in straight pieces. Those that reach into the circle, with the axis on their outer side, form patches,
+one for each run of connected pieces. Let rho be the distance of a point from the axis, and zeta = (R^2 -
+rho^2)/2R. The depth of a patch is
 
-    z = R - sqrt(R^2 - 2 R y),   y = 5/4 * (integral of zeta^2) / (integral of zeta), along the patch,
+    z = R - sqrt(R^2 - 2 R y),   y = 5/4 I_2/I_1,
 
-and the force on the roller is minus the gradient of 2/5 k z^2.5: what is stored is given back. Along a
-straight piece, and to second order along any round, zeta is a parabola, of which y is the height: over a flat
-mesh z is the depth of the lowest line to round-off, and over an arc of facets, however many it has, it is
-right to half of what the facets are off the arc. An edge that comes into the circle from outside counts as
-5/6 of its depth or more. The force goes through the axis.
+with the integrals I_1 of zeta and I_2 of zeta^2 along the patch. The force on the roller is minus the
+gradient of 2/5 k z^2.5, so all stored energy is returned. Along a straight piece, and to second order along
+any round, zeta is a parabola, of which y is the height. So over a flat mesh z is the depth of the lowest line
+to round-off. Over an arc of any number of facets its error is half of the distance between facets and arc. An
+edge that comes into the circle from outside counts as 5/6 of its depth or more. The force goes through the
+axis.
 """
 
 from __future__ import annotations
@@ -27,8 +28,8 @@ from mdlgen.mechanics.vector import add, back, cross, dot, matmul, nine, rotate,
 from mdlgen.program.kernel import CALLED, OWNS, njit
 
 SLICES = 8
-MOST_PIECES = 512  # of one slice; what is more counts to the patch of the last
-_JOINED = 1e-7  # of the radius: ends of pieces that are one
+MOST_PIECES = 512  # most pieces of one slice; further ones belong to the patch of the last
+_JOINED = 1e-7  # relative to the radius: distance of ends of pieces that coincide
 # Columns of a piece: places where it begins and ends (2 each); the integrals of zeta and of its square; those
 # of place (2), and of zeta times place (2); its patch.
 _BEGIN, _END, _ZETA, _SQUARE, _PLACE, _MOMENT, _PATCH, _PIECE = 0, 2, 4, 5, 6, 8, 10, 11
@@ -122,7 +123,7 @@ def _gather(pieces, meshes, head, at, axis, one, two, radius):
 
 @njit(cache=True, error_model="numpy")
 def _join(pieces, found, radius):
-    """Gives pieces that hang together one number of a patch."""
+    """Gives connected pieces the same number of a patch."""
     near = _JOINED * radius
     for i in range(found):
         for j in range(i):
@@ -183,7 +184,7 @@ def roller_mesh(out, body, a, b, head, meshes, law):
 
 @njit(cache=True, error_model="numpy", **CALLED)
 def roller_mesh_near(body, xa, xb, rb, head, meshes, more):
-    """Whether a roller that is larger by `more` on all sides may meet a leaf of the mesh's tree."""
+    """True if a roller that is larger by `more` on all sides may meet a leaf of the mesh's tree."""
     radius, half = body.size[RADIUS] + more, 0.5 * body.size[WIDTH] + more
     gap = sub(xa, xb)
     wide = head.reach + math.sqrt(radius * radius + half * half)

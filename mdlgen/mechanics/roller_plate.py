@@ -32,18 +32,17 @@ from mdlgen.program.kernel import BORROWS, CALLED, OWNS, njit
 
 # Cosine of the angle between a roller's axis and a face's normal, above which the roller stands on its end.
 STEEPEST = 0.5
-# How deep a roller may be in a plate, in times its radius: its axis is soon behind the face.
+# Greatest depth of a roller in a plate, relative to its radius: beyond it its axis is soon behind the face.
 DEEP_ROLLER = 0.5
 _GAUSS = 1.0 / math.sqrt(3.0)
 
 
 class Spot(NamedTuple):
-    """Where a roller is touched.
+    """Place at which a roller is touched.
 
-    at: a point of its axis; way: unit vector from there, square to the axis, to where it touches; gap: how
-    far along `normal`, which points to the roller, what it touches is from the axis, so that the depth is
-    that of its radius less the gap; turns: by which angle `way` turns as the axis moves by a unit along
-    axis x way.
+    at: a point of its axis; way: unit vector from there, perpendicular to the axis, to the touched place;
+    gap: distance of that place from the axis along `normal`, which points to the roller, so that the depth is
+    the radius minus the gap; turns: angle by which `way` turns as the axis moves by a unit along axis x way.
     """
 
     at: Vector
@@ -151,7 +150,7 @@ def roller_plate(out, body, rims, a, b, face, law):
                 weight = 0.5 * (last - first) / (cosine * width)
                 at = add(a.x, scale(u, axis))
                 touch(out, body, rims, a, Spot(at, down, over, normal, 0.0), weight, b, law)
-    # what of the width is beside the plate, and may touch an edge
+    # part of the width that is not over the plate, and may touch an edge
     for part in range(2):
         first = begin if part == 0 else high
         last = low if part == 0 else end
@@ -238,14 +237,14 @@ def roller_arc(out, body, rims, a, b, shape, half, side, law):
 
 @njit(cache=True, error_model="numpy", **BORROWS)
 def reach_along(body, way):
-    """How far a roller reaches to either side of its centre along a direction."""
+    """Extent of a roller to both sides of its centre along a direction."""
     lean = dot(three(body.axis), way)
     return 0.5 * body.size[WIDTH] * abs(lean) + body.size[RADIUS] * math.sqrt(max(0.0, 1.0 - lean * lean))
 
 
 @njit(cache=True, error_model="numpy", **BORROWS, **CALLED)
 def plate_near(body, at, rb, other, more):
-    """Whether a roller whose centre is at a place (axes rb) of a plane may come `more` near to it."""
+    """True if a roller whose centre is at a place (axes rb) of a plane may be nearer to it than `more`."""
     for i in range(3):
         way = (rb[i], rb[3 + i], rb[6 + i])
         if abs(at[i]) > other.half[i] + reach_along(body, way) + more:

@@ -1,5 +1,5 @@
-"""What takes more than a record of a body or of a pair: meshes, rims in sectors, friction as measured,
-torques of motors, limiters and bearings."""
+"""Tables of data that do not fit into the record of a body or of a pair: meshes, rims in sectors, measured
+friction, torques of motors, limiters and bearings."""
 
 from __future__ import annotations
 
@@ -28,7 +28,7 @@ class Shapes(NamedTuple):
 
 
 def shape_tables(model: Model, units: Units = OWN) -> Shapes:
-    """Of a Model, in a solver's units."""
+    """The Shapes of a Model, in a solver's units."""
     return Shapes(
         mesh_tables(model, units.mm),
         rim_table(model, units.mm),

@@ -1,4 +1,4 @@
-"""Which contacts the solvers have a law for."""
+"""Check for contacts without a law in the solvers."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from mdlgen.model.tables import EXTERNAL, Model
 
 
 def refuse_unsolved(model: Model, who: str) -> None:
-    """Raises RefusedError by name for a contact of a kind that has no law."""
+    """Raises RefusedError, with the name, for a contact of a kind that has no law."""
     table = model.contacts
     for row, kind in enumerate(table.kind.tolist()):
         if kind not in WITH_LAW and kind != EXTERNAL:

@@ -1,23 +1,24 @@
 """Friction that sticks: a tangential spring at each corner of the overlap of two sheets' faces.
 
-At a corner (mechanics.overlap) the two faces are held by a spring of stiffness k_t, whose stretch z is what
-they have moved along each other since they stuck, in the owner's axes. In a step of 2 h with the velocity v
-along the faces in its middle
+At a corner (mechanics.overlap) a spring of stiffness k_t holds the two faces. Its stretch z is their motion
+along each other since they stuck, in the owner's axes. In a step of 2 h with the velocity v along the faces
+in its middle
 
     z_1 = z_0 + 2 h v, brought back to |k_t z_1| <= mu N where it is beyond,    f = -k_t z_1.
 
 This is the return mapping of Coulomb friction (Simo and Hughes, Computational Inelasticity, section 3.2). The
 force is that of the stretch at the end of the step: the spring with a damper k_t h. The midpoint rule itself
-damps nothing, and a stuck sheet would ring on; so it is at rest within a step where its spring is stiff for
-the step, and loses little where it is not. For a given N the force is the slope of a convex function of v.
+damps nothing, and a stuck sheet would keep ringing. With that damper it is at rest within a step where its
+spring is stiff for the step, and loses little energy where it is not. For a given N the force is the slope of
+a convex function of v.
 
-k_t is a constant of the pair, shared by its corners as k is. So the spring has an energy of its own,
-k_t z^2/2, that a load which comes and goes does not change, and it takes what it does not store:
+k_t is a constant of the pair, shared by its corners as k is. So the spring has its own energy, k_t z^2/2,
+which does not change with the normal load, and dissipates the work that it does not store:
 
     2 h v . k_t z_1 - k_t (z_1^2 - z_0^2)/2 = k_t z_1 . (z_0 + 2 h v - z_1) + k_t (z_1 - z_0)^2/2 >= 0.
 
 mu is the static coefficient up to the stiction velocity and goes to the dynamic one at the friction velocity.
-What is at rest has v = 0 and z_1 = z_0: it stays where it is.
+At rest v = 0 and z_1 = z_0: the sheet does not move.
 """
 
 from __future__ import annotations
@@ -45,23 +46,23 @@ from mdlgen.program.kernel import BORROWS, FUSED, njit
 
 STRETCH = np.dtype(
     [
-        ("a", "i8"),  # boxes of the pair
+        ("a", "i8"),  # boxes of the pair.
         ("b", "i8"),
-        ("count", "i8"),  # corners with a stretch as the step begins, 0: the pair is new
-        ("first", "i8"),  # whether the first box owned the contact there
-        ("energy", "f8"),  # stored there [N mm],
-        ("after", "f8"),  # and as the step ends
-        ("corners", "f8", (MOST_CORNERS, 2)),  # in the owner's axes as the step begins [mm],
-        ("begun", "f8", (MOST_CORNERS, 2)),  # and their stretches: of the owner against the other box [mm]
-        ("now", "f8", (MOST_CORNERS, 2)),  # the same at the corners that are kept now (mechanics.overlap),
-        ("ended", "f8", (MOST_CORNERS, 2)),  # and as the step ends
+        ("count", "i8"),  # corners with a stretch as the step begins, 0: the pair is new.
+        ("first", "i8"),  # 1 if the first box owned the contact there.
+        ("energy", "f8"),  # energy stored there [N mm].
+        ("after", "f8"),  # energy as the step ends [N mm].
+        ("corners", "f8", (MOST_CORNERS, 2)),  # in the owner's axes as the step begins [mm].
+        ("begun", "f8", (MOST_CORNERS, 2)),  # their stretches: of the owner against the other box [mm].
+        ("now", "f8", (MOST_CORNERS, 2)),  # stretches at the present corners (mechanics.overlap).
+        ("ended", "f8", (MOST_CORNERS, 2)),  # stretches as the step ends.
     ]
 )
 
 
 @njit(cache=True, error_model="numpy", forceinline=True)
 def limit_of(v_p, v_r, law):
-    """What friction holds for 1 of the normal force, at a velocity along the faces."""
+    """Limit of friction per normal force, at a velocity along the faces."""
     speed = math.sqrt(v_p * v_p + v_r * v_r)
     return coefficient(speed, law.mu_static, law.mu_dynamic, law.stiction, law.sliding)
 
@@ -77,9 +78,9 @@ def _seen_from(owner, other, p, r, z_p, z_r):
 
 @njit(cache=True, error_model="numpy", **BORROWS)
 def carry_stretch(stuck, kept, a, b, ratio):
-    """Gives the corners that were just found of two boxes (Frames) the stretches that the step begins with:
-    each has that of the nearest corner then. All are made less where they would store more. ratio: k_t for 1
-    of k [mm^0.5]."""
+    """Carries the stretches at the beginning of the step to the new corners of two boxes (Frames): each takes
+    that of the nearest old corner. All are reduced where they would store more energy. ratio: k_t/k
+    [mm^0.5]."""
     energy = 0.0
     turned = stuck.first != kept.first
     was, becomes = (a, b) if stuck.first != 0 else (b, a)
@@ -104,8 +105,8 @@ def carry_stretch(stuck, kept, a, b, ratio):
 
 @njit(cache=True, error_model="numpy", **BORROWS, **FUSED)
 def press_sticking(out, kept, stuck, a, b, law, ratio, h):
-    """As overlap.press with friction that sticks, in the middle of a step of 2 h; 0: between steps. What
-    becomes of the stretches stands in `stuck` then. ratio: k_t for 1 of k [mm^0.5]."""
+    """As overlap.press with friction that sticks, in the middle of a step of 2 h; 0: between steps. Writes
+    the stretches at the end of the step into `stuck`. ratio: k_t/k [mm^0.5]."""
     first = kept.first != 0
     owner, other = (a, b) if first else (b, a)
     place, level, lean_p, lean_r = plane_of(kept, owner, other)
@@ -171,7 +172,7 @@ def stretch_of(stuck, kept, owner, corner):
 
 @njit(cache=True, error_model="numpy", **BORROWS)
 def end_step(stuck, kept, a, b):
-    """The stretches of a pair of bodies a and b as the step has left them."""
+    """Ends a step: sets the stretches of a pair of bodies a and b to those at its end."""
     stuck.a, stuck.b, stuck.first, stuck.count, stuck.energy = a, b, kept.first, kept.count, stuck.after
     for corner in range(kept.count):
         for i in range(2):
@@ -181,7 +182,7 @@ def end_step(stuck, kept, a, b):
 
 @njit(cache=True, error_model="numpy", **BORROWS)
 def let_go(stuck):
-    """A pair that has come apart. Returns the energy that its springs had."""
+    """Resets a pair that has come apart. Returns the energy that its springs had."""
     energy = stuck.energy
     stuck.count, stuck.energy = 0, 0.0
     for corner in range(MOST_CORNERS):

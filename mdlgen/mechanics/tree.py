@@ -1,8 +1,8 @@
-"""A tree of bounding volumes over the triangles of a mesh, and what is asked of it.
+"""A hierarchy of bounding volumes over the triangles of a mesh, and its queries.
 
 Each node has the least box round its triangles, in the file's axes, and one round their outward normals.
-Nodes stand in the order in which they are visited, each with where to go on where it is left out: no stack
-is needed, and nothing is allocated in a query.
+Nodes are in the order of a visit, each with the node that follows where it is skipped: a query needs no
+stack, and allocates nothing.
 """
 
 from __future__ import annotations
@@ -18,17 +18,17 @@ from mdlgen.program.kernel import CALLED, njit
 LEAF = 8  # triangles
 # Columns of the bounds of a node: least and greatest coordinates, least and greatest normals.
 LOW, HIGH, LEAST, MOST = 0, 3, 6, 9
-# Of its links: first triangle, how many (0: there are nodes below), where to go on where it is left out.
+# Columns of its links: first triangle, number of them (0: there are nodes below), next node if it is skipped.
 FIRST, COUNT, AFTER = 0, 1, 2
-# Of a triangle: corners (9), outward normal (3), the depth that is nearer to it than to another side, area.
+# Columns of a triangle: corners (9), outward normal (3), depth up to which it is the nearest side, area.
 NORMAL, THICK, AREA, WIDTH = 9, 12, 13, 14
 
 
 def build_tree(corners: Floats, triangles: Ints, most: float) -> tuple[Floats, Ints, Floats]:
     """Bounds (nodes, 12) and links (nodes, 3) of the tree, and its triangles (m, WIDTH), of a closed surface;
-    triangles without an area are left out.
+    triangles without an area are omitted.
 
-    A triangle counts as deep as half of how thick the part is behind it, and `most` at most.
+    The depth of a triangle is half of the thickness of the part behind it, and at most `most`.
     """
     places = corners[triangles]
     normals = np.cross(places[:, 1] - places[:, 0], places[:, 2] - places[:, 0])
@@ -92,7 +92,7 @@ def _bounds(table: Floats, links: Ints) -> Floats:
 
 @njit(cache=True, error_model="numpy")
 def set_thickness(bounds, links, triangles, most):
-    """Sets how deep each triangle counts: half of what lies behind its middle and behind three points near
+    """Sets the depth of each triangle: half of the thickness behind its middle and behind three points near
     its corners."""
     for t in range(triangles.shape[0]):
         c, normal = triangles[t], three(triangles[t, NORMAL:])
@@ -108,8 +108,8 @@ def set_thickness(bounds, links, triangles, most):
 
 @njit(cache=True, error_model="numpy")
 def behind(bounds, links, triangles, first, end, at, way, far):
-    """Distance from a point of the surface along `way` to where it leaves the part, and by which triangle;
-    `far` and -1 where that is farther."""
+    """Distance from a point of the surface along `way` to where the ray leaves the part, and the triangle
+    there; `far` and -1 where that is farther."""
     found, by, n = far, -1, first
     last = add(at, scale(far, way))
     while n < end:
@@ -124,7 +124,7 @@ def behind(bounds, links, triangles, first, end, at, way, far):
         for t in range(links[n, FIRST], links[n, FIRST] + links[n, COUNT]):
             c, normal = triangles[t], three(triangles[t, NORMAL:])
             along = dot(normal, way)
-            if along <= 1e-9:  # one that the ray would enter by
+            if along <= 1e-9:  # the ray would enter by this triangle
                 continue
             a = (c[0], c[1], c[2])
             distance = dot(normal, sub(a, at)) / along
@@ -173,10 +173,10 @@ def closest(c, at):
 
 @njit(cache=True, error_model="numpy", **CALLED)
 def depth_at(bounds, links, triangles, first, end, at, most):
-    """How deep a point is below the nearest triangle, and that one's number; negative: it is outside, or
+    """Depth of a point below the nearest triangle, and the number of that; negative: the point is outside, or
     farther than `most`.
 
-    Of triangles that are equally near (at an edge, or a corner) the one that the point is most above or below
+    Where triangles are equally near (at an edge, or a corner), the one whose plane is farthest from the point
     decides on which side it is.
     """
     near2, best, deep, n = most * most, -1, -1.0, first
@@ -202,8 +202,8 @@ def depth_at(bounds, links, triangles, first, end, at, most):
 
 @njit(cache=True, error_model="numpy")
 def next_at(bounds, links, triangles, first, end, at, most, normal):
-    """How far a point is from the nearest triangle across an outward edge from one of a `normal`, by 60 to
-    120 deg, and that one's number; -1: none is nearer than `most`."""
+    """Distance of a point from the nearest triangle across an outward edge of 60 to 120 deg, and its number;
+    -1: none is nearer than `most`. `normal`: that of the triangle on the other side of the edge."""
     near2, best, n = most * most, -1, first
     while n < end:
         box, gap2 = bounds[n], 0.0
@@ -238,7 +238,7 @@ def span(bounds, n, way):
 
 @njit(cache=True, error_model="numpy")
 def overlaps(bounds, links, first, end, middle, axes, half):
-    """Whether a box (middle, axes as a matrix from its own to the file's, half lengths) may meet a leaf."""
+    """True if a box (middle, axes as a matrix from its own to the file's, half lengths) may meet a leaf."""
     n = first
     while n < end:
         apart = False

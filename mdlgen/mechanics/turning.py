@@ -1,6 +1,6 @@
-"""What a contact pair does about the axes of its rollers, and its friction along their surfaces.
+"""Torques of a contact pair about the axes of its rollers, and its friction along their surfaces.
 
-The friction of a pair is that of all its points; the couple of rolling resistance turns, and is no friction.
+The friction of a pair is that of all its points; the couple of rolling resistance is a torque, not friction.
 """
 
 from __future__ import annotations
@@ -30,18 +30,18 @@ from mdlgen.mechanics.point import (
 from mdlgen.mechanics.vector import cross, dot, three, three_from
 from mdlgen.program.kernel import BORROWS, njit
 
-# Columns of what a pair adds: its torque on the first body about the axis of that, on the second about its
-# own; friction along the surface of a roller, as that turns about its axis; the most that friction can be.
+# Columns: torque of a pair on the first body about the axis of that, and on the second about its own;
+# friction along the surface of a roller, positive in the sense of its axis; the limit of that friction.
 ABOUT_A, ABOUT_B, ALONG, LIMIT, TURNING = 0, 1, 2, 3, 4
 
 
 @njit(cache=True, error_model="numpy", **BORROWS)
 def turning(bodies, pair, out, rows, row, first):
-    """Adds what a pair turns to the TURNING columns of a row of `rows`, from `first` on; `out` is what
-    pair_force left, with its contact points.
+    """Adds the torques and the friction of a pair to the TURNING columns of a row of `rows`, from `first` on;
+    `out` is the result of pair_force, with its contact points.
 
-    A body that is no roller has no axis, and no torque about it. Of two rollers the surface is that of the
-    second; without any, friction counts by its size.
+    A body that is no roller has no axis, and no torque about it. For two rollers the surface is that of the
+    second; without any, the magnitude of friction is added.
     """
     one, two = three(bodies[pair.a].axis), three(bodies[pair.b].axis)
     rows[row, first + ABOUT_A] += dot(three_from(out, TORQUE_A), one)

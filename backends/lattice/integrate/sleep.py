@@ -279,7 +279,7 @@ class Sleep:
         return self.whole.motion(self.work.state, self.work.mid.motion)
 
     def _meet(self, rows: NDArray[np.bool_]) -> None:
-        """Notes on which side of parts the boxes of contacts `rows` (contacts,) are as they come in."""
+        """Stores the sides of parts on which the boxes of contacts `rows` (contacts,) come in."""
         from mdlgen.backends.lattice.kernels import entries
 
         some = np.flatnonzero(rows[self._whole.pairs["row"][: self._whole.search.first]])

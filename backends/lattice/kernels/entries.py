@@ -48,7 +48,7 @@ def joint_forces(joints, points, motion, f):
 
 @njit(cache=True, error_model="numpy")
 def contacts(tables, motion, mid):
-    """Contacts of bodies at rest: forces, touching pairs and what they do into those of a Midpoint; returns
+    """Contacts of bodies at rest: writes forces, touching pairs and their results into a Midpoint; returns
     how many touch."""
     close = _near_pairs(tables, motion, 0.0, 0.0, mid.near)
     count, _, _ = _pair_forces(tables, mid.near, close, motion, mid.forces, mid.touched, mid.results)

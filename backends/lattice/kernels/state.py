@@ -220,7 +220,7 @@ PATCH = np.dtype(
 
 
 class Free(NamedTuple):
-    """Sheets that hang on nothing, see momentum.keep."""
+    """Free sheets, which no joint holds, see momentum.keep."""
 
     label: Ints  # (nodes,) sheet of each node.
     sheet: Ints  # (bodies,) sheet of each body, -1: it is not free.

@@ -203,7 +203,7 @@ FACTOR_SERVES = 8.0
 # Convention: number of steps for which a factor of dampers is reused: a sheet bends little in them.
 DAMPERS_LAST = 50
 
-# -- Pairs that are near, and what a step may pass
+# -- Near pairs, and checks of a step for pairs that cross
 # [mm] Convention: pairs are evaluated in a step where their gap is below this plus their motion in the step.
 FAR = 0.05
 
@@ -352,7 +352,7 @@ TETHER = 1e-9
 # [rad/ms] Convention: a balance is stable where a disturbance needs ten seconds or more to grow e-fold.
 STANDS = 1e-4
 
-# Convention: halvings between a load at which a balance stands and one at which it does not.
+# Convention: halvings between a load with a stable balance and one without.
 STANDING_HALVINGS = 10
 
 # Derived: relative difference of both bounds that ends the limit search: a tenth of the residual of a

@@ -1,4 +1,4 @@
-"""Reads a deck back into the values that the reader of MotionView text gives."""
+"""Reads a deck back into the same values as the reader of MDL files."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""All elements of a deck with their attributes, ids as the names of what they are of."""
+"""All elements of a deck with their attributes, with the names of entities in place of their ids."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""An element of a deck: its name, its attributes as numbers or words, and where it stands."""
+"""An element of a deck: its name, its attributes as numbers or words, and its place."""
 
 from __future__ import annotations
 

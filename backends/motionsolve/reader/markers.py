@@ -30,7 +30,7 @@ def markers(index: Index) -> dict[int, Marker]:
 
 
 def _marker(index: Index, entity: Entity) -> Marker:
-    """Places are global ones, also where a body's LPRF stands elsewhere (documented, seen in decks)."""
+    """Places are global ones, also where a body's LPRF is elsewhere (documented, seen in decks)."""
     body = index.get(entity, "body_id", "Body_Rigid")
     origin = entity.vector("pos_x", "pos_y", "pos_z", default=0.0)
     return Marker(entity.name, entity.word("label", ""), body.name, origin, _axes(entity))

@@ -12,7 +12,7 @@ _SHOWN = 80  # characters of a wrong value that a message shows
 
 
 def root(text: str, file: str) -> etree._Element:
-    """The root element. Raises SpecError with file:line for what is no deck."""
+    """The root element. Raises SpecError with file:line for a text that is no deck."""
     declared = text.find("<!DOCTYPE")
     if declared >= 0:  # in it stand entities, which can grow without bound or name other files
         raise trouble(file, text.count("\n", 0, declared) + 1, "a deck has no document type declaration")
@@ -38,7 +38,7 @@ def root(text: str, file: str) -> etree._Element:
 
 
 def line(element: etree._Element) -> int:
-    """Where the start tag of an element ends, counted from 1."""
+    """Line at which the start tag of an element ends, counted from 1."""
     return int(element.sourceline or 1)
 
 

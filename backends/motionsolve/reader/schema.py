@@ -14,7 +14,7 @@ from mdlgen.paths import templates
 
 @lru_cache(maxsize=1)
 def schema() -> etree.RelaxNG:
-    """Our schema of what a deck holds."""
+    """Our schema of the contents of a deck."""
     return etree.RelaxNG(etree.parse(str(templates() / "motionsolve" / "deck.rng")))
 
 

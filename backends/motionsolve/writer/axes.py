@@ -21,7 +21,8 @@ def cosines(rotation: Floats) -> Cosines | None:
 
 
 def along(z: Floats) -> Floats:
-    """The axes that MotionView gives the markers of a joint along `z`: X level, square to global Z (seen)."""
+    """Axes of the markers of a joint along `z`, as MotionView sets them: X level, square to global Z
+    (seen)."""
     level = np.array([-z[1], z[0], 0.0])
     if np.hypot(level[0], level[1]) <= _PARALLEL:
         level = np.array([1.0, 0.0, 0.0])

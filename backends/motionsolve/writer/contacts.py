@@ -1,4 +1,4 @@
-"""Rows of the contacts: one for each pair of bodies that is kept."""
+"""Rows of the contacts: one for each pair of bodies."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from mdlgen.model.tables import Model
 
 
 def add_contacts(deck: Deck, model: Model) -> None:
-    """All kept pairs, and all sectors of a rim in them; the numbers of an entry stand in each."""
+    """All kept pairs, and all sectors of a rim in them; each contains the numbers of its entry."""
     bodies, pairs = model.bodies, model.pairs
     law = cache(partial(_law, model))
     columns = (c.tolist() for c in (pairs.contact, pairs.a, pairs.b, model.pair_friction))

@@ -1,4 +1,4 @@
-"""Boxes that show what has no form of its own in a deck, each round a marker of its own."""
+"""Boxes that show parts without their own form in a deck, each around its own marker."""
 
 from __future__ import annotations
 

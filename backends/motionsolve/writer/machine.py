@@ -26,7 +26,7 @@ def add_machine(deck: Deck, model: Model) -> None:
 
 
 def _add_facets(deck: Deck, model: Model) -> None:
-    """The boxes that show parts, each round a marker of its own."""
+    """The boxes that show parts, each around its own marker."""
     ids = facet_ids(model)
     for kind, part in written(model):
         for name, label, facet in kind.shown(model, part):

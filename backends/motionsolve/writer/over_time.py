@@ -9,7 +9,7 @@ from mdlgen.model.tables import Floats
 
 
 def linear(times: list[str], values: list[str]) -> str:
-    """The sum of what each piece between two corners adds."""
+    """The sum of terms, one for each piece between two corners."""
     parts = [values[0]]
     for (t, w), (t_end, w_end) in pairwise(zip(times, values, strict=True)):
         parts.append(f"({w_end}-({w}))*MAX(0,1-MAX(0,({t_end}-TIME)/({t_end}-{t})))")

@@ -84,7 +84,7 @@ def _law(k: list[float], c: list[float], push: list[float]) -> tuple[tuple[str, 
 
 
 def add_surfaces(deck: Deck, model: Model) -> None:
-    """A surface through the centres of the boxes, row by row, for each sheet that asks for one."""
+    """A surface through the centres of the boxes, row by row, for each sheet that requests one."""
     for sheet in (s for s in model.sheets if s.surface):
         at = triples(model.bodies.position[sheet.first : sheet.first + sheet.count])
         rows: list[list[int]] = []
@@ -104,7 +104,7 @@ def add_surfaces(deck: Deck, model: Model) -> None:
 
 
 def add_probes(deck: Deck, model: Model) -> None:
-    """A marker on each box that a probe lies on, and what is recorded of them."""
+    """A marker on each box with a probe, and the requests for these."""
     table = model.bodies
     for probe in model.probes:
         arms = (table.rotation[probe.body] @ probe.local[:, :, None])[:, :, 0]

@@ -30,7 +30,7 @@ _BUFFERED = 4096  # pieces of text that are joined at once: a large deck has mil
 
 
 def check(model: Model) -> None:
-    """Raises RefusedError by name for what the deck cannot represent."""
+    """Raises RefusedError, with the name, for features that the deck cannot represent."""
     refuse_externals(model, "MotionSolve deck")
     refuse_axles(model, "MotionSolve deck")
     refuse_passing(model, "MotionSolve deck")
@@ -50,7 +50,7 @@ def check(model: Model) -> None:
 
 
 def emit(model: Model) -> str:
-    """The whole deck, ASCII with LF line ends; the same Model always gives the same text.
+    """The whole deck, ASCII with LF line ends; the same Model always yields the same text.
 
     Raises RefusedError (see `check`), and SpecError where two names would meet in the deck.
     """

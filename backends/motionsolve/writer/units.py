@@ -1,4 +1,4 @@
-"""From the Model's units (mm, N, g, ms, rad) to those of the deck (mm, N, kg, s, rad), as text."""
+"""Converts from the Model's units (mm, N, g, ms, rad) to those of the deck (mm, N, kg, s, rad), as text."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ Triple = tuple[str, str, str]
 
 
 def number(value: float) -> str:
-    """A number as it stands in the deck: the shortest that reads back as the same float."""
+    """A number as written in the deck: the shortest that reads back as the same float."""
     return repr(float(value) + 0.0)  # + 0.0 turns -0.0 into 0.0
 
 

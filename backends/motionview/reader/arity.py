@@ -59,7 +59,7 @@ DefineSystem 1+         System 3+             Attachment 3-6         AttachmentC
 SetAttachmentCandidateTag 2                   DefineAnalysis 1+      Analysis 3+
 SetActiveAnalysis 1     DefineTemplate 1+     Template 4+
 """
-# Names that are easily taken for a statement, and what was meant.
+# Names that are often mistaken for a statement, and the statement that was meant.
 _MEANT = {
     "bushing": "Bush",
     "setbushing": "SetBush",
@@ -107,7 +107,7 @@ def meant(statement: Statement) -> str:
 
 
 def complaint(statement: Statement) -> str:
-    """Why the number of arguments is wrong, or an empty text."""
+    """Reason why the number of arguments is wrong, or an empty text."""
     count = len(statement.args)
     name, ranges = RANGES[statement.key]
     for low, high in ranges:

@@ -100,7 +100,7 @@ class Changes:
                 for used in self._named(slot):
                     users.setdefault(used, set()).add(slot)
                 holder = scope.declaration.slot if scope.declaration else None
-                if holder is not None:  # a data set given as a whole stands for all that is in it
+                if holder is not None:  # a data set given as a whole includes all its members
                     users.setdefault(slot, set()).add(holder)
         return users
 

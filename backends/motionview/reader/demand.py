@@ -1,7 +1,7 @@
-"""Values that are found when they are asked for, kept, and never twice at work.
+"""Values that are evaluated on demand and cached.
 
-A chain of points, each from the one before, may be as long as the file. So `demand` goes only so deep;
-then it stops, finds the deepest value first, and starts again with that one known.
+A chain of points, each from the one before, may be as long as the file. So the recursion of `demand` is
+limited. At the limit it stops, evaluates the deepest value first, and starts again with that one known.
 """
 
 from __future__ import annotations
@@ -17,7 +17,7 @@ _MISSING = object()
 
 
 class Deeper(Exception):
-    """A value is asked for that lies too deep: it is to be found first."""
+    """Raised for a value beyond the limit of recursion, which must be evaluated first."""
 
     def __init__(self, thing: Any, key: str):
         super().__init__(key)
@@ -26,16 +26,16 @@ class Deeper(Exception):
 
 
 class Demand:
-    """Properties of things, each worked out once."""
+    """Properties of entities, each evaluated once."""
 
     def __init__(self) -> None:
         self.calls = 0
         self._waiting: set[tuple[int, str]] = set()  # values that wait for deeper ones
-        self._begun: tuple[int, str] = (0, "")  # the one of them that is looked at now
+        self._begun: tuple[int, str] = (0, "")  # the value that is evaluated now
         self._inside = False  # of force
 
     def demand(self, thing: Any, key: str) -> Any:
-        """A property of a thing. Raises Trouble, always the same one for the same reason."""
+        """A property of an entity. Raises Trouble, always the same one for the same reason."""
         memo = thing.memo
         value = memo.get(key, _MISSING)
         if value is not _MISSING:

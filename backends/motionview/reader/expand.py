@@ -33,7 +33,7 @@ class Lost(NamedTuple):
 
     statement: Statement
     scope: Scope
-    external: str  # why nothing can be said of it, or an empty text
+    external: str  # reason why its values are unknown, or an empty text
 
 
 class Expansion:
@@ -48,11 +48,11 @@ class Expansion:
         self._standard: dict[str, Definition] = {}
         self.sets: list[tuple[Statement, Scope, Guard | None, int]] = []
         self.lost: list[Lost] = []
-        self.standing: list[tuple[Statement, Scope, Guard | None]] = []  # all that stands in a living scope
+        self.standing: list[tuple[Statement, Scope, Guard | None]] = []  # all statements in a living scope
         self._count = 0
 
     def run(self) -> World:
-        """Raises SpecError for a text whose definitions multiply beyond all use."""
+        """Builds the World. Raises SpecError for a file with too many statements after expansion."""
         made = self._built_ins()
         most = MOST_STATEMENTS + MOST_TIMES * len(self.program.statements)
         tasks = [(self.world.root, self.program.model)]
@@ -137,7 +137,7 @@ class Expansion:
         inner.append((child, definition))
 
     def _alone(self, definition: Definition) -> Scope:
-        """An instance of a definition whose attachments stand in the model that it is made for."""
+        """An instance of a definition whose attachments are in the model that it is made for."""
         made_by = definition.statement
         assert made_by is not None
         root, name = self.world.root, definition.name.removeprefix("def_")
@@ -159,7 +159,7 @@ class Expansion:
         return child
 
     def _declared(self) -> None:
-        """In a part of a model: what an attachment declares by the name that its instance gives."""
+        """For a part of a model: declares the entities of attachments by the names in the instance."""
         for scope in self.world.scopes:
             for name, parameter in scope.parameters.items():
                 given, attachment = parameter.instance.arg(parameter.at), parameter.attachment
@@ -288,7 +288,7 @@ class Expansion:
         return slot, rest
 
     def slots(self) -> Iterator[Slot]:
-        """All names of all scopes, those too that the standard include makes."""
+        """All names of all scopes, including those of the standard include."""
         for scope in (self.standard, *self.world.scopes):
             yield from scope.slots.values()
 
@@ -309,7 +309,7 @@ class Expansion:
     # -- what the standard include makes
 
     def _built_ins(self) -> list[tuple[Scope, Definition]]:
-        """Makes them; gives the systems among them that are still to be filled."""
+        """Makes the entities of the standard include; returns the systems among them that are still empty."""
         world = self.world
         begin = self.program.begin
         if begin is None and self.program.statements:  # a part of a model, which has these all the same
@@ -332,7 +332,7 @@ class Expansion:
         return inner
 
     def _standard_systems(self, inner: list[tuple[Scope, Definition]]) -> None:
-        """Gravity and units: what a text may set of the standard include."""
+        """Makes gravity and units: the entities of the standard include that a file may set."""
         made = standard()
         self._standard = made.definitions
         for item in made.model.items:
@@ -355,7 +355,7 @@ def _kind(name: str) -> tuple[str, bool]:
 
 
 def expand(program: Program, notes: Notes) -> Expansion:
-    """The World, with what was lost on the way."""
+    """The World of a program, with the Set statements whose target is in no scope."""
     made = Expansion(program, notes)
     made.run()
     return made

@@ -1,4 +1,4 @@
-"""Expression text -> a function of the scope that gives its value.
+"""Compiles the text of an expression into a function of the scope that returns its value.
 
 Each rule of the grammar makes a closure. `Compiled.depth` is how deep closures call each other, so that the
 evaluator can stop before Python's own limit; chains such as a+b+c+... are loops and add no depth.
@@ -42,7 +42,7 @@ _RANKS = {
     **{"<": _LESS, ">": _LESS, "<=": _LESS, ">=": _LESS},
     **{"+": _SUM, "-": _SUM, "*": _PRODUCT, "/": _PRODUCT, "%": _PRODUCT},
 }
-_BEHIND = (".", "[", "@")  # what may stand behind a value
+_BEHIND = (".", "[", "@")  # operators that may follow a value
 _BARE_NUMBER = re.compile(r"[-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?\Z")
 _ESCAPES = {"n": "\n", "t": "\t"}
 
@@ -55,14 +55,14 @@ class Compiled(NamedTuple):
 
 
 def literal(text: str) -> float | None:
-    """The number that a text is, or None where it is more than a number, or more than a number can be."""
+    """Value of a text that is a number; None where it is not, or where the number is too large."""
     number = float(text) if _BARE_NUMBER.match(text) else math.inf
     return number if math.isfinite(number) else None
 
 
 @lru_cache(maxsize=10_000)  # of the texts that are read while a scene is verified, most are the same
 def compiled(text: str) -> Compiled:
-    """Raises Trouble (with the offset in `text`) for what is no expression."""
+    """The compiled form of `text`. Raises Trouble (with the offset in `text`) where it is no expression."""
     return _Parser(text).whole()
 
 
@@ -118,7 +118,7 @@ class _Parser:
     # -- helpers
 
     def sign(self, *signs: str) -> str:
-        """Takes one of the signs, or gives an empty text."""
+        """Consumes one of the signs and returns it, or an empty text."""
         kind, value, _ = self.tokens[self.at]
         if kind == "sign" and value in signs:
             self.at += 1
@@ -153,8 +153,8 @@ class _Parser:
         return condition
 
     def operation(self, least: int) -> Run:
-        """Values joined by operators that bind as tightly as `least` at least; those of one rank go from left
-        to right, in one loop."""
+        """Values joined by operators of rank `least` or more; those of one rank are evaluated from left to
+        right, in one loop."""
         value = self.unary()
         while True:
             rank = self.rank()
@@ -168,7 +168,7 @@ class _Parser:
             value = _joined(rank, value, rest)
 
     def rank(self) -> int:
-        """How tightly the operator binds that stands here; 0: there is none."""
+        """Rank of the operator at this place; 0: there is none."""
         kind, sign, _ = self.tokens[self.at]
         return _RANKS.get(sign, 0) if kind == "sign" else 0
 

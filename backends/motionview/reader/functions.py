@@ -63,7 +63,7 @@ def _length(scope: Scope, values: Sequence[Any], shift: int) -> float:
 
 
 def _strstr(scope: Scope, values: Sequence[Any], shift: int) -> float:
-    """Where the second text stands in the first, -1 where it does not."""
+    """Place of the second text in the first, -1 where it does not."""
     if len(values) != 2 or not all(isinstance(v, str) for v in values):
         raise Trouble("function", "strstr takes two texts", shift)
     return float(values[0].find(values[1]))

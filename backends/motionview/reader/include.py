@@ -20,7 +20,7 @@ _TOO_MUCH = f"the files that are included in files are more than {MOST_FILES}, o
 
 
 class Unread(Exception):
-    """Why a file is not read."""
+    """Reason why a file is not read."""
 
 
 class Includes:
@@ -92,7 +92,7 @@ class Includes:
         return path, inner
 
     def _path(self, name: str, folder: Path) -> Path:
-        """Where a file is, links followed. Raises Unread for one that is not in the tree of the text."""
+        """Path of a file, links followed. Raises Unread for a file outside of the folder of the text."""
         assert self.folder is not None
         pure = PurePosixPath(name)
         if pure.is_absolute() or "\\" in name or ":" in name or "\0" in name:

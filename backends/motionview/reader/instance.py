@@ -1,4 +1,4 @@
-"""An instance of a definition, seen from outside: what it is given, and what around it acts on it."""
+"""An instance of a definition, seen from outside: its attachments, and the statements that act on it."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from mdlgen.backends.motionview.reader.statement import Statement
 from mdlgen.backends.motionview.reader.things.joints import JOINTS
 
 _PATH = re.compile(r"[A-Za-z_]\w*(?:\.[A-Za-z_]\w*)*")
-# Statements that look at what they name, or hand it on, and do nothing to it.
+# Statements that only read an entity, or pass it on.
 _LOOKING = {
     *("point", "pointpair", "vector", "vectorpair", "marker", "markerpair", "body", "bodypair", "graphic"),
     *("graphicpair", "output", "system", "analysis", "dataset", "template", "form", "report", "attachment"),
@@ -23,7 +23,7 @@ _MOVED = {"Body", "Marker", "Bush", "Motion", "Contact", "DeformableSurface", *J
 
 
 class Attached(NamedTuple):
-    """An attachment: its name inside, kind and default, and what the instance has for it (None: unknown)."""
+    """An attachment: its name inside, kind and default, and the entity of the instance (None: unknown)."""
 
     name: str
     kind: str
@@ -55,7 +55,7 @@ def _given(expansion: Expansion, scope: Scope, name: str) -> str | None:
 
 
 def acting_on(expansion: Expansion, path: str) -> list[Statement]:
-    """Statements around an instance that name bodies of it, or what holds them, and may move or stop them."""
+    """Statements around an instance that name its bodies, or their owners, and may move or stop them."""
     found = []
     for statement, scope, guard in expansion.standing:
         key = statement.key

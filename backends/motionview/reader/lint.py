@@ -17,7 +17,7 @@ from mdlgen.backends.motionview.reader.traps import traps
 if TYPE_CHECKING:
     from mdlgen.backends.motionview.reader.reading import Reading
 
-# Statements whose arguments were all looked at when the values were found.
+# Statements whose arguments were all evaluated for the values.
 _SEEN = {
     *("point", "pointpair", "vector", "vectorpair", "marker", "markerpair", "polybeam", "template"),
     *("bush", "bushpair", "coilspring", "coilspringpair", "motion", "contact", "graphic", "graphicpair"),
@@ -110,7 +110,7 @@ def _standard(reading: Reading) -> None:
 
 
 def _unread(reading: Reading) -> None:
-    """Set statements that no value acts on: of a property that is not known, of a thing of another kind."""
+    """Reports Set statements without effect: of an unknown property, or of an entity of another kind."""
     world = reading.world
     for slot in reading.expansion.slots():
         for (key, part), settings in (slot.settings or {}).items():
@@ -154,7 +154,8 @@ def _lost(lost: list[Lost], notes: Notes) -> None:
 
 
 def _references(reading: Reading) -> None:
-    """Evaluates what the values did not need: outputs, forces, variables, arguments of instances."""
+    """Evaluates statements that the values did not need: outputs, forces, variables, arguments of
+    instances."""
     world = reading.world
     externals = _externals(reading)
     for statement, scope, guard in reading.expansion.standing:
@@ -175,7 +176,7 @@ def _references(reading: Reading) -> None:
 
 
 def _externals(reading: Reading) -> set[tuple[int, int]]:
-    """Reports the attachments that stand elsewhere; gives the arguments (statement, index) that name them."""
+    """Reports the attachments in another model; returns the arguments (statement, index) that name them."""
     found = set()
     for scope in reading.world.scopes:
         for parameter in scope.parameters.values():
@@ -187,7 +188,7 @@ def _externals(reading: Reading) -> set[tuple[int, int]]:
 
 
 def _first_value(reading: Reading, statement: Statement) -> int | None:
-    """The first argument that is worth a look; None where the values have seen them all."""
+    """The first argument that must be checked; None where the values have used them all."""
     key = statement.key
     if key in ("system", "analysis", "dataset"):
         return 3

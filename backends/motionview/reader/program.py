@@ -1,4 +1,4 @@
-"""Statements -> definitions, conditions and contexts: the file as it is nested, before any instance."""
+"""Parses statements into definitions, conditions and contexts: the nested file, before any instance."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ _CLOSING = {
 
 
 class Guard(NamedTuple):
-    """A condition under which a statement stands, and the ones around it."""
+    """The condition around a statement, and the outer ones."""
 
     outer: Guard | None
     condition: Statement
@@ -27,7 +27,7 @@ class Guard(NamedTuple):
 
 
 class Item(NamedTuple):
-    """A statement with the condition that it stands under, and the contexts around it."""
+    """A statement with the conditions and the contexts around it."""
 
     statement: Statement
     guard: Guard | None
@@ -35,7 +35,7 @@ class Item(NamedTuple):
 
 
 class Definition:
-    """A *Define... with what stands in it; also the model itself."""
+    """A *Define... with its contents; also the model itself."""
 
     def __init__(self, statement: Statement | None):
         self.statement = statement
@@ -45,13 +45,13 @@ class Definition:
         self.used = False
 
     def attachments(self) -> dict[str, Statement]:
-        """The statements that say what its arguments are, by argument."""
+        """The statements that declare its arguments, by argument."""
         found = (item.statement for item in self.items if item.statement.key == "attachment")
         return {statement.arg(0): statement for statement in found}
 
     @property
     def parameters(self) -> tuple[str, ...]:
-        """Names of the arguments; three words before them say the type of a typed system."""
+        """Names of the arguments; a typed system has three words for its type before them."""
         if self.statement is None:
             return ()
         args = self.statement.args[1:]
@@ -71,7 +71,7 @@ class Program:
         self.statements: list[Statement] = []
 
     def alone(self) -> list[Definition]:
-        """The systems of a text that holds definitions only, but for those that others of them hold."""
+        """The outermost systems of a file that has definitions only."""
         if self.model.items:
             return []
         held = {s.arg(2) for s in self.statements if s.key == "system"}
@@ -87,14 +87,14 @@ class _Open(NamedTuple):
 
 
 def program(statements: Iterable[Statement], notes: Notes) -> Program:
-    """Raises nothing: what is not nested rightly is reported and left out."""
+    """The program of a file. Raises nothing: wrongly nested statements are reported and omitted."""
     made = Program()
     open_: list[_Open] = []
     definition, guard, contexts = made.model, None, ()
     for statement in statements:
         made.statements.append(statement)
         key = statement.key
-        if key not in _FRAME and not key.startswith("define"):  # as nearly all
+        if key not in _FRAME and not key.startswith("define"):  # the most frequent case
             definition.items.append(Item(statement, guard, contexts))
             continue
         if key in _CLOSING:

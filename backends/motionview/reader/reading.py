@@ -1,4 +1,4 @@
-"""A text, read: its report and its values from one pass."""
+"""An MDL file that was read: its report and its values, from one pass."""
 
 from __future__ import annotations
 
@@ -44,7 +44,7 @@ class Reading:
     def changed(
         self, path: str, text: str, without: tuple[str, ...] = ()
     ) -> dict[str, dict[str, Any]] | None:
-        """Values of all that may depend on a number, were it `text`; see `change.Changes`."""
+        """Values of all entities that may depend on a number, if it were `text`; see `change.Changes`."""
         with _without_collection():
             return self._changes.values(path, text, without)
 
@@ -57,11 +57,11 @@ class Reading:
         return attachments(self.expansion, instance)
 
     def acting_on(self, instance: str) -> list[Statement]:
-        """Statements around an instance that act on what it holds."""
+        """Statements around an instance that act on its bodies."""
         return acting_on(self.expansion, instance)
 
     def remainder(self) -> list[Rest]:
-        """Statements of which the values say nothing."""
+        """Statements that the values do not represent."""
         return list(remainder(self.expansion))
 
     def instances(self, definition: str) -> list[str]:
@@ -86,7 +86,8 @@ class Reading:
 
 @contextmanager
 def _without_collection() -> Iterator[None]:
-    """Nothing is thrown away while a text is read, and looking for it takes a third of the time."""
+    """Disables garbage collection: no garbage arises while a file is read, and the search takes a third of
+    the time."""
     running = gc.isenabled()
     gc.disable()
     try:
@@ -94,6 +95,6 @@ def _without_collection() -> Iterator[None]:
     finally:
         if running:
             if not gc.get_freeze_count():
-                gc.freeze()  # what was read becomes old, and is not looked through at once
+                gc.freeze()  # excludes the objects that were read from the next collections
                 gc.unfreeze()
             gc.enable()

@@ -1,4 +1,4 @@
-"""Statements of which the values say nothing: what they do must be known from elsewhere, or is not known."""
+"""Statements that the values do not represent: their effect must be known from elsewhere, or is unknown."""
 
 from __future__ import annotations
 
@@ -10,9 +10,9 @@ from mdlgen.backends.motionview.reader.settable import acts, harmless
 from mdlgen.backends.motionview.reader.statement import Statement
 from mdlgen.backends.motionview.reader.things import CLASSES
 
-# Things that have a record, or that make bodies that have one; a system shows by what is in it.
+# Entities that have a record, or that make bodies with one; a system is represented by its contents.
 _SHOWN = set(CLASSES) - {"ActionReactionForce", "Coupler", "SolverVariable"} | {"DataSet"}
-# Blocks and heads that show by what is in them, or in the record of the model.
+# Blocks and heads that are represented by their contents, or in the record of the model.
 _FRAMES = {
     *("beginmdl", "endmdl", "enddefine", "begincontext", "endcontext", "definedataset", "definetemplate"),
     *("standardinclude", "setcurrentsolvermode"),
@@ -25,7 +25,8 @@ _DECORATION = {
 
 
 class Rest(NamedTuple):
-    """One such statement, the definition that it stands in, and the scope of what it sets (`sys_note.`)."""
+    """One such statement, the definition around it, and the scope of the entity that it sets
+    (`sys_note.`)."""
 
     statement: Statement
     definition: str
@@ -33,12 +34,12 @@ class Rest(NamedTuple):
 
     @property
     def key(self) -> tuple[str, ...]:
-        """The same for statements that differ in blanks and in the case of their name only."""
+        """Key for comparison; it ignores blanks and the case of the statement's name."""
         return (self.definition, self.statement.key, *("".join(a.split()) for a in self.statement.args))
 
 
 def remainder(expansion: Expansion) -> Iterator[Rest]:
-    """In the order of the text."""
+    """The statements that the values do not represent, in the order of the file."""
     shown, about = _shown(expansion)
     definitions: list[str] = []
     for statement in expansion.program.statements:
@@ -48,14 +49,15 @@ def remainder(expansion: Expansion) -> Iterator[Rest]:
         inside = definitions[-1] if definitions else ""
         if key.startswith("define"):
             definitions.append(statement.arg(0))
-            inside = ""  # where a definition stands changes nothing
+            inside = ""  # the place of a definition has no influence
         if key in _FRAMES or key in _DECORATION or id(statement) in shown:
             continue
         yield Rest(statement, inside, about.get(id(statement)))
 
 
 def _shown(expansion: Expansion) -> tuple[set[int], dict[int, str]]:
-    """Ids of the statements that the values show; for all that set something, where that is."""
+    """Ids of the statements that the values represent; and for all Set statements, the scope of their
+    target."""
     shown: set[int] = set()
     about: dict[int, str] = {}
     for slot in expansion.slots():

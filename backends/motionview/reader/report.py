@@ -37,7 +37,8 @@ class Report(NamedTuple):
 
 
 class Trouble(Exception):
-    """Why something has no value. The same object is kept for all that depends on it, and reported once.
+    """Reason why an entity or an expression has no value. All values that depend on it share the same object,
+    which is reported once.
 
     `shift` is where in the expression, until `place` is known.
     """

@@ -1,4 +1,4 @@
-"""Where names live: the model, systems, data sets and compound graphics, each with its slots."""
+"""Scopes of names: the model, systems, data sets and compound graphics, each with its slots."""
 
 from __future__ import annotations
 
@@ -88,7 +88,7 @@ class Scope:
         self.standard = False  # made by the standard include, which holds more than is known here
 
     def slot(self, name: str) -> Slot:
-        """The slot of a name, made where it is new."""
+        """The slot of a name; a new one where there is none."""
         found = self.slots.get(name)
         if found is None:
             found = self.slots[name] = Slot(self, name)

@@ -51,7 +51,7 @@ class Statement:
         return f"*{self.name}( {inner} )" if inner else f"*{self.name}()"
 
     def arg(self, index: int) -> str:
-        """An argument, empty where it is left out."""
+        """An argument, empty where it is omitted."""
         return self.args[index] if index < len(self.args) else ""
 
 

@@ -20,7 +20,7 @@ _SLACK = 1e-9  # relative, for sums of inertia that are equal but for rounding
 
 
 def traps(world: World, notes: Notes) -> None:
-    """Looks at all things that could be evaluated."""
+    """Checks all entities that could be evaluated."""
     for thing in world.things():
         if isinstance(thing, Joint) and _is_bush(thing):
             thing = thing.ask("bush")

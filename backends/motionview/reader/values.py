@@ -15,7 +15,7 @@ from mdlgen.backends.motionview.reader.things.templates import Template
 from mdlgen.backends.motionview.reader.things.thing import Thing
 from mdlgen.backends.motionview.reader.world import World
 
-# Kind of thing -> where it is listed.
+# Kind of entity -> its list.
 LISTS = {
     "Point": "points",
     "Vector": "vectors",
@@ -34,7 +34,7 @@ LISTS = {
 }
 
 
-# Labels of what has no record of its own; the model itself, with what it sets of the standard include.
+# Labels of entities without a record; the model itself, with its settings of the standard include.
 _MORE = ("velocities", "datasets", "members", "labels", "model", "commands", "standard", "forces")
 
 

@@ -71,7 +71,7 @@ class World(Demand):
             except Trouble as trouble:
                 found = trouble
             self._compiled[text] = found
-        if isinstance(found, Trouble):  # a new one: it stands in another place
+        if isinstance(found, Trouble):  # a new one: its place differs
             raise Trouble(found.code, found.message, found.shift, found.severity)
         return found
 
@@ -178,7 +178,7 @@ class World(Demand):
     # -- names
 
     def thing(self, slot: Slot) -> Any:
-        """The Thing or Pair of a slot, or None where all its statements stand under a false condition."""
+        """The Thing or Pair of a slot, or None where the conditions of all its statements are false."""
         declaration = self.declaration(slot)
         if declaration is None:
             return None
@@ -250,7 +250,7 @@ class World(Demand):
         return found
 
     def settings(self, slot: Slot, kind: str, part: str = "") -> list[Setting]:
-        """The Set statements that hold for a part of a slot, the one that counts last."""
+        """The Set statements that hold for a part of a slot, the effective one last."""
         if slot.settings is None:
             return []
         found = slot.settings.get((kind, part))

@@ -23,7 +23,7 @@ def components(direction: Floats) -> tuple[str, str, str]:
 
 
 def zx_vector(rotation: Floats) -> str:
-    """The global vector in the plane of a body's z and x axes, from which ZX gives that x axis."""
+    """The global vector in the plane of a body's z and x axes, from which ZX computes that x axis."""
     x, y = rotation[:, 0], rotation[:, 1]
     k = min((0, 1), key=lambda k: (abs(y[k]) > 1e-9, -x[k]))
     return f"V_Global_{'XY'[k]}"

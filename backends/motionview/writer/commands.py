@@ -1,4 +1,4 @@
-"""Solver commands that give contacts their numbers by keyword, from the values of their data sets."""
+"""Solver commands that set the numbers of contacts by keyword, from the values of their data sets."""
 
 from __future__ import annotations
 

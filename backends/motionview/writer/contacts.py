@@ -33,7 +33,7 @@ def contact_views(model: Model, given: dict[str, list[Value]], written: Sequence
 
 
 def pair_rows(model: Model) -> list[Pair]:
-    """One row for each pair of bodies that is kept, and for each sector of a rim in it."""
+    """One row for each pair of bodies, and for each sector of a rim in it."""
     bodies, table = model.bodies, model.contacts
     shown = [[f"gbox_{name}"] for name in bodies.name]
     for part in model.machine:

@@ -32,7 +32,7 @@ def own_definitions(text: str, system: str) -> str:
 
 
 def without_definitions(body: str) -> str:
-    """`body` without the definitions of data sets, which must not stand in a system definition."""
+    """`body` without the definitions of data sets, which must not be in a system definition."""
     return _DEFINITION.sub("", body)
 
 

@@ -24,7 +24,7 @@ _STIFFNESS = ("E_md", "E_cd", "k_tx", "k_ty", "k_tz", "D_md", "D_cd", "D_twist",
 def idle_values(model: Model, numbers_by: str, kept: Sequence[int]) -> dict[tuple[str, str], str]:
     """Reason by (data set, member).
 
-    `numbers_by` is what gives contacts their numbers, `kept` are contacts (rows) that stand in the text.
+    `numbers_by`: the source of the numbers of contacts; `kept`: contacts (rows) that are in the text.
     """
     found = _contacts(model, numbers_by, kept) | _unused(model)
     for p in model.parameters:

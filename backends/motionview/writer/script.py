@@ -29,7 +29,8 @@ class Numbers(NamedTuple):
 
 
 def reasons(model: Model, set_contact: bool = False, only: str | None = None) -> list[str]:
-    """Why the script is needed, one line each: the solver commands of a whole text say what it does."""
+    """Reasons why the script is needed, one line each: the solver commands of a whole text have its
+    numbers."""
     found, rows = [], _written(model, only)
     if len(rows) and only is not None and not set_contact:
         found.append("the contact numbers: the argument order of SetContact is not certain")

@@ -36,7 +36,7 @@ TARGETS = ("2021", "2025")
 
 
 def check(model: Model) -> None:
-    """Raises RefusedError by name for what the text cannot represent."""
+    """Raises RefusedError, with the name, for features that the text cannot represent."""
     refuse_externals(model, "MotionView text of the whole scene")
     refuse_axles(model, "MotionView text")
     refuse_passing(model, "MotionView text")
@@ -47,7 +47,7 @@ def check(model: Model) -> None:
 
 
 def check_sheets(model: Model) -> None:
-    """Raises RefusedError by name for what the text of the sheets cannot represent."""
+    """Raises RefusedError, with the name, for features that the text of the sheets cannot represent."""
     refuse_sticking(model, "MotionView text")
     refuse_measured(model, "MotionView text")
     refuse_yield(model, "MotionView text")
@@ -68,7 +68,7 @@ def emit(
     target: str = TARGETS[0],
     forces: bool = False,
 ) -> str:
-    """The .mdl text, ASCII with LF line ends; the same Model always gives the same text.
+    """The .mdl text, ASCII with LF line ends; the same Model always yields the same text.
 
     `set_contact` also writes the contact numbers with SetContact, whose argument order is documented but
     not seen in a file; without it they are set by the companion script. `only="sheets"` gives the sheets

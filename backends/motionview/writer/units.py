@@ -1,4 +1,5 @@
-"""From the Model's units (mm, N, g, ms, rad) to those of MotionView (mm, N, kg, s; angles in degrees)."""
+"""Converts from the Model's units (mm, N, g, ms, rad) to those of MotionView (mm, N, kg, s; angles in
+degrees)."""
 
 from __future__ import annotations
 
@@ -9,7 +10,7 @@ from mdlgen.units import parse_unit, same
 
 
 def number(value: float) -> str:
-    """A number as it stands in the text: the shortest that reads back as the same float."""
+    """A number as written in the text: the shortest that reads back as the same float."""
     return repr(float(value) + 0.0)  # + 0.0 turns -0.0 into 0.0
 
 

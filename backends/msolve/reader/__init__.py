@@ -39,7 +39,7 @@ class Reading:
         return values(self.made, self._file)
 
     def objects(self) -> list[tuple[tuple[str, str], dict[str, Any]]]:
-        """Class and label of every object, and what was given to it; objects in it by their labels."""
+        """Class and label of every object, and its arguments; objects in it by their labels."""
         return comparable(self.made)
 
 

@@ -38,7 +38,7 @@ def split(text: str, file: str) -> Script:
     rest: list[ast.stmt] = []
     for statement in tree.body:
         name = name_of(statement)
-        if name not in TABLES or len(without_notes(rest)) != _IMPORTS:  # values stand below the imports
+        if name not in TABLES or len(without_notes(rest)) != _IMPORTS:  # values are below the imports
             rest.append(statement)
             continue
         assert isinstance(statement, ast.Assign)

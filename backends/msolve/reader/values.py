@@ -286,7 +286,7 @@ def _run(objects: Objects, simulate: dict[str, Any]) -> dict[str, Any]:
 
 
 def comparable(made: Made) -> list[tuple[tuple[str, str], dict[str, Any]]]:
-    """Class and label of every object, with what was given to it: numbers, words, names of other objects."""
+    """Class and label of every object, with its arguments: numbers, words, names of other objects."""
     objects = Objects(made, "")
     found = []
     for thing in made.things:

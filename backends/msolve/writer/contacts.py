@@ -1,4 +1,4 @@
-"""Contacts by law, and what is recorded of their forces."""
+"""Contacts by law, and the requests for their forces."""
 
 from __future__ import annotations
 

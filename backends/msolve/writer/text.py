@@ -37,7 +37,7 @@ _ERROR = 1e-3  # of the integrator, as MotionView writes it
 
 
 def check(model: Model) -> None:
-    """Raises RefusedError by name for what the script cannot represent."""
+    """Raises RefusedError, with the name, for features that the script cannot represent."""
     who = "MotionSolve script"
     refuse_externals(model, who)
     refuse_axles(model, who)
@@ -83,7 +83,7 @@ def tables(model: Model) -> dict[str, Any]:
 
 
 def emit(model: Model) -> str:
-    """The whole script, ASCII with LF line ends; the same Model always gives the same text.
+    """The whole script, ASCII with LF line ends; the same Model always yields the same text.
 
     Raises RefusedError (see `check`), and SpecError where two names would meet in the script.
     """

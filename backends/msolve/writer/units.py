@@ -1,4 +1,4 @@
-"""From the Model's units (mm, N, g, ms, rad) to those of the script (mm, N, kg, s, rad)."""
+"""Converts from the Model's units (mm, N, g, ms, rad) to those of the script (mm, N, kg, s, rad)."""
 
 from __future__ import annotations
 

@@ -31,7 +31,7 @@ def force(bodies, pair, shapes, motion, out):
 
 @njit(cache=True, error_model="numpy", forceinline=True, **BORROWS)
 def near(bodies, pair, shapes, motion, margin, ahead):
-    """Of nearly all pairs their bounding spheres tell; of others the axes of the first box."""
+    """By their bounding spheres, which decide nearly all cases, then by the axes of the first box."""
     a, b, r = pair.a, pair.b, motion.r
     gap, rate, half, other = gap_of(pair, motion.x), rate_of(pair, motion), bodies[a].half, bodies[b].half
     moved = turning(bodies[a], motion, a) + turning(bodies[b], motion, b)
@@ -66,7 +66,7 @@ def deepest(bodies, pair):
 
 @njit(cache=True, error_model="numpy", forceinline=True, **BORROWS)
 def unseen(bodies, pair, shapes):
-    """Less than what is left of the thickness beyond `deepest`."""
+    """Less than the rest of the thickness beyond `deepest`."""
     return STRIDE * min(bodies[pair.a].half[2], bodies[pair.b].half[2])
 
 

@@ -92,7 +92,7 @@ def closing(bodies, pair, shapes, motion, ahead):
 
 @njit(cache=True, error_model="numpy", forceinline=True, **BORROWS)
 def above(bodies, pair, x, r):
-    """Of a guide with two faces; 0 where the box's centre is not over it."""
+    """For a guide with two faces; 0 where the box's centre is not over it."""
     b = pair.b
     if bodies[b].side != BOTH:
         return 0

@@ -43,7 +43,7 @@ def rolling(bodies, pair, shapes, motion):
 
 @njit(cache=True, error_model="numpy", forceinline=True, **BORROWS)
 def near(bodies, pair, shapes, motion, margin, ahead):
-    """Of most pairs their bounding spheres tell; of others the tree of the mesh."""
+    """By their bounding spheres, which decide most cases, then by the tree of the mesh."""
     a, b, x, r, own = pair.a, pair.b, motion.x, motion.r, bodies[pair.a]
     head, gap, spin = shapes.meshes.heads[pair.mesh], gap_of(pair, motion.x), vec(motion.w, pair.b)
     fast = fastest_place(size(own), rate_of(pair, motion), vec(motion.w, a))
@@ -85,8 +85,8 @@ def closing(bodies, pair, shapes, motion, ahead):
 
 @njit(cache=True, error_model="numpy", forceinline=True, **BORROWS)
 def buried(bodies, pair, shapes, x, r):
-    """Whether the centre is deeper than half of what counts there: the sides of a sheet do not know how deep
-    they are."""
+    """True if the centre is deeper than half of the greatest depth there: the sides of a sheet have no bound
+    on their depth."""
     meshes = shapes.meshes
     head = meshes.heads[pair.mesh]
     turn = mat(r, pair.b)

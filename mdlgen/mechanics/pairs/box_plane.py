@@ -38,7 +38,7 @@ def plate(bodies, pair, motion):
 
 @njit(cache=True, error_model="numpy", forceinline=True, **BORROWS)
 def near(bodies, pair, shapes, motion, margin, ahead):
-    """By what the box reaches along the plane's normal; along the plane a sheet may be fast."""
+    """By the extent of the box along the plane's normal; along the plane a sheet may be fast."""
     a, b, r, half = pair.a, pair.b, motion.r, bodies[pair.a].half
     gap, normal = gap_of(pair, motion.x), (r[b, 2], r[b, 5], r[b, 8])
     fast = abs(dot(rate_of(pair, motion), normal)) + turning(bodies[a], motion, a) + swinging(motion, b, gap)

@@ -1,2 +1,2 @@
-"""Contacts in a step: which pairs are near, how their forces grow, the condensed contact system, and what a
-step may not pass."""
+"""Contacts in a step: near pairs, the slopes of their forces, the condensed contact system, and checks that
+no body passes through another."""

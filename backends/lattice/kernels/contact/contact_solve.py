@@ -114,7 +114,7 @@ def _impulses(tables, xm, h, t, state, condensed, m, p):
         if spin >= 0:
             axis = bodies[b].axis
             about = f[b, 3] * axis[0] + f[b, 4] * axis[1] + f[b, 5] * axis[2]
-            if bodies[b].coupled == FOLLOWER:  # it stands behind the one that leads
+            if bodies[b].coupled == FOLLOWER:  # its leader precedes it
                 p[6 * m + spin] += h * bodies[b].ratio * about
                 continue
             rate = state.ub[spin] + condensed.z[6 * m + spin]
@@ -123,7 +123,7 @@ def _impulses(tables, xm, h, t, state, condensed, m, p):
 
 @njit(cache=True, error_model="numpy", **BORROWS)
 def _begin(work, h, m):
-    """Sets z to zero, z0 to what the residual changes, and the measures of both."""
+    """Sets z to zero, z0 to the change due to the residual, and the measures of both."""
     bodies, nodes, x, ub = work.tables.bodies, work.tables.nodes, work.state.x, work.state.ub
     s = work.state.s
     condensed, islands, res, resb = work.condensed, work.islands, work.matrix.res, work.matrix.resb

@@ -22,7 +22,7 @@ def part_of_change(tables, near, close, r, h, change):
     bodies, listed, most = tables.bodies, tables.listed, 0.0
     for n in range(tables.nodes.size):
         most = max(most, change[6 * n] ** 2 + change[6 * n + 1] ** 2 + change[6 * n + 2] ** 2)
-    if 2.0 * h * math.sqrt(most) <= CLOSER * tables.thinnest:  # no pair needs a look
+    if 2.0 * h * math.sqrt(most) <= CLOSER * tables.thinnest:  # no pair needs a check
         return 1.0
     worst, first = 0.0, tables.pairs.size - listed.size
     for at in range(close):
@@ -66,12 +66,12 @@ def _height(bodies, pair, x, r):
 
 @njit(cache=True, error_model="numpy")
 def crossed(tables, mid, counts, state, first, h):
-    """The near pair of which a step takes a box through one of another sheet, or -1: from `state` over the
-    middle, h later, as far again.
+    """First near pair of which a step takes a box through one of another sheet, or -1. The step goes from
+    `state` to the middle, h later, and as far again.
 
-    counts: how many pairs touch in the middle, how many are near; first: the pair of the first overlap that
-    is kept. Where faces lie on each other in the middle, no deeper than half of the thinner box, they can
-    have changed sides only where they moved by a quarter of it.
+    counts: how many pairs touch in the middle, how many are near; first: the pair of the first cached
+    overlap. Faces that lie on each other in the middle, no deeper than half of the thinner box, can have
+    changed sides only if they moved by a quarter of it.
     """
     bodies, listed, near, motion = tables.bodies, tables.listed, mid.near, mid.motion
     fast, known = mid.fastest[MIDDLE], 0
@@ -79,7 +79,7 @@ def crossed(tables, mid, counts, state, first, h):
     most, thinnest = 0.0, tables.thinnest
     for b in tables.nodes:
         most = max(most, fast[b])
-    calm = 2.0 * h * most < CLOSER * thinnest  # so each pair is slow, whatever boxes it is of
+    calm = 2.0 * h * most < CLOSER * thinnest  # then every pair is slow
     for at in range(close):
         touches = known < count and mid.touched[known] == near[at]
         deep, lie = 0.0, False

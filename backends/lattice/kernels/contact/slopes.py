@@ -216,9 +216,9 @@ def holding(t, pulled, limit, k_t, n, h, chord):
 
 @njit(cache=True, error_model="numpy", **BORROWS)
 def core_stretched(numbers, n, square, w, g, h, chord, whole):
-    """As `core` where friction goes with the direction of the sheet (mechanics.measured): w is the stretched
-    slip velocity, and g the stretch along the faces. With f = -phi A w, and A = P + g g^T, friction loses
-    A K A, where K is what it loses as w grows."""
+    """As `core` where friction depends on the direction of the sheet (mechanics.measured): w is the stretched
+    slip velocity, and g the stretch along the faces. With f = -phi A w, and A = P + g g^T, the decrease of
+    friction per slip velocity is A K A, where K is that per w."""
     speed = math.sqrt(w[0] * w[0] + w[1] * w[1] + w[2] * w[2])
     secant, tangent = rubbing(numbers, speed, h, chord)
     i = 1.0 / speed if speed > 0.0 else 0.0

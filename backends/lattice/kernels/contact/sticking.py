@@ -1,8 +1,8 @@
-"""Stretches of pairs whose friction sticks: what a step leaves of them, and what a new search does.
+"""Stretches of pairs whose friction sticks: their update after a step, and after a new search.
 
-A step begins with the stretches of the last one (mechanics.stick). Iterations leave those as they are, so a
-step that is taken again, shorter, begins with the same. Pairs that a search lists in other places take
-their stretches with them.
+A step begins with the stretches of the last one (mechanics.stick). Iterations do not change those, so a step
+that is repeated, shorter, begins with the same. Pairs that a search lists in other places keep their
+stretches.
 """
 
 from __future__ import annotations
@@ -16,8 +16,8 @@ from mdlgen.program.kernel import BORROWS, njit
 
 @njit(cache=True, error_model="numpy", **BORROWS)
 def end_of_step(work, count, close, energies):
-    """Takes over the stretches that a step ends with. `count`: how many pairs touch in its middle; `close`:
-    how many are near. The springs that are released dissipate their energy: energies (groups, 4)."""
+    """Stores the stretches at the end of a step. `count`: how many pairs touch in its middle; `close`: how
+    many are near. The springs that are released dissipate their energy: energies (groups, 4)."""
     tables, mid, first = work.tables, work.mid, work.search.first
     near, overlaps, sticks = mid.near, mid.overlaps, mid.sticks.pairs
     known = 0
@@ -62,8 +62,8 @@ def set_aside(sticks):
 
 @njit(cache=True, error_model="numpy", **BORROWS)
 def put_back(pairs, sticks, first, islands, energies):
-    """Gives the pairs from `first` on, which were searched again, the stretches that were set aside. The
-    springs whose pair is none any more dissipate their energy: energies (groups, 4)."""
+    """Restores the stretches in `aside` to the pairs from `first` on, which were searched again. Springs
+    whose pair is no longer listed dissipate their energy: energies (groups, 4)."""
     for b in range(sticks.head.size):
         k = sticks.head[b]
         while k >= 0:

@@ -1,4 +1,4 @@
-"""From the middle to the end of a step (see integrate.step)."""
+"""Carries a state from the middle to the end of a step (see integrate.step)."""
 
 from __future__ import annotations
 
@@ -33,7 +33,7 @@ def spun(axles, body, s, u, v, t, dt):
 
 @njit(cache=True, error_model="numpy", **BORROWS)
 def carry(tables, state, t, dt):
-    """From the middle to the end of a step."""
+    """Carries a state from the middle to the end of a step, of dt [ms] from t."""
     bodies, nodes, images, axles = tables.bodies, tables.nodes, tables.images, tables.shapes.axles
     x, r, v, l, s, vb, u, ub = state
     for n in range(nodes.size):

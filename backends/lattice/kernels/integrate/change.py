@@ -1,4 +1,4 @@
-"""Changes of the velocities of all bodies: the greatest of an iteration, and what moves most."""
+"""Changes of the velocities of all bodies: the greatest of an iteration, and the body that moves most."""
 
 from __future__ import annotations
 

@@ -1,1 +1,1 @@
-"""Static equilibrium: the stiffness of what is at rest, and the iterations that find it."""
+"""Static equilibrium: the stiffness of a state at rest, and the iterations that find the balance."""

@@ -16,7 +16,7 @@ class _Meshes(Kind[MeshPart]):
     rank = 1
 
     def add_frame(self, deck: Deck, model: Model, part: MeshPart) -> None:
-        """The axes of a mesh, on what it moves with."""
+        """The axes of a mesh, on the body with which it moves."""
         (at,) = triples(origin(part, model.rollers)[None])
         deck.marker(f"m_{part.name}", f"Axes of {part.name}", _under(model, part), at, cosines(part.axes))
 

@@ -14,7 +14,7 @@ class _Planes(Kind[PlanePart]):
     rank = 3
 
     def add_joints(self, deck: Deck, model: Model, part: PlanePart) -> None:
-        """A pressed one stands on its slide itself."""
+        """A pressed plane is the body of its slide itself."""
         add_gate(deck, part, model.bodies.position[part.body])
         if part.press is None:
             return

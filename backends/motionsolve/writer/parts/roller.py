@@ -170,7 +170,7 @@ def _add_arm(deck: Deck, model: Model, roller: RollerPart, arm: ArmPart, id: int
 
 
 def _add_cylinder(deck: Deck, model: Model, roller: RollerPart, place: Floats) -> None:
-    """The graphic, whose marker stands where the cylinder starts, with Z along it (seen)."""
+    """The graphic, whose marker is at the start of the cylinder, with Z along it (seen)."""
     name, label = f"gcyl_{roller.name}", model.bodies.label[roller.body]
     (start,) = triples((place - roller.width / 2 * roller.axis)[None])
     axes = cosines(model.bodies.rotation[roller.body])

@@ -81,7 +81,7 @@ class Body(Thing):
         return self.ask("cm")
 
     def p_lprf(self) -> PartMarker:
-        """Where the body's coordinates start; at the global origin unless a point is given."""
+        """Marker at the origin of the body's coordinates: the global origin unless a point is given."""
         return PartMarker(self, "lprf", "Marker LPRF", lambda: self, self._reference)
 
     def p_geomprops(self) -> PartMarker:

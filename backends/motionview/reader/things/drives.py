@@ -74,7 +74,7 @@ class ContactThing(Thing):
         return found
 
     def _flips(self) -> tuple[str, ...]:
-        """The words after the graphics: whether their normals are turned."""
+        """The words after the graphics, which flip their normals."""
         words = (a.lower() for a in self.statement.args[4:])
         return tuple(word for word in words if word in ("true", "false"))
 

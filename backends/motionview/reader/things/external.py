@@ -37,7 +37,7 @@ class External:
         return self.name
 
     def trouble(self) -> Trouble:
-        """The warning for this attachment; the same for all that asks for more than its name."""
+        """The warning for this attachment; the same object for every value that needs more than its name."""
         attachment = self.parameter.attachment
         kind = f"the {self.kind} " if self.kind else ""
         message = f"{kind}{self.given} is external: it stands in the model that this text is made for"

@@ -17,7 +17,7 @@ if TYPE_CHECKING:
     from mdlgen.backends.motionview.reader.things.joints import Joint
     from mdlgen.backends.motionview.reader.world import World
 
-# How many arguments stand after the word that says how a stiffness or a force is given.
+# Number of arguments after the word for the form of a stiffness or a force.
 TOKENS = {"LIN": 1, "CRV": 3, "SPL3D": 4, "EXPR": 1, "USER": 1}
 GROUPS = ("k", "c", "kt", "ct")
 Components = tuple[float | str, float | str, float | str]
@@ -77,11 +77,11 @@ class _Link(Thing):
         return self.related(3, "Body")
 
     def start(self) -> Vector:
-        """Where i is."""
+        """Place of marker i."""
         return self.position(4)
 
     def end(self) -> Vector:
-        """Where j is."""
+        """Place of marker j."""
         return self.start()
 
     def natural(self) -> Axes:

@@ -14,7 +14,7 @@ if TYPE_CHECKING:
 
 
 class _Triple(Thing):
-    """Three numbers that a Set statement gives; each is found by itself, since one may need another."""
+    """Three numbers of a Set statement; each is found by itself, since one may need another."""
 
     complete = True
     setter = ""
@@ -30,7 +30,7 @@ class _Triple(Thing):
             return 0.0
         at = chosen.first + index
         if self.side == "r" and chosen.first == 2 and not chosen.mirrored and not chosen.statement.arg(1):
-            at += 3  # the right half of a statement that gives both sides
+            at += 3  # the right half of a statement for both sides
         source = self.twin() if chosen.mirrored else self
         value = source.number(at, chosen.statement, chosen.scope)
         return -value + 0.0 if chosen.mirrored and index == 1 else value

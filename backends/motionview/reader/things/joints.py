@@ -29,7 +29,7 @@ from mdlgen.backends.motionview.reader.things.vectors import (
 )
 from mdlgen.backends.motionview.reader.world import Vector
 
-# kind: (type in the deck, how the arguments after the origin say the axes)
+# kind: (type in the deck, form in which the arguments after the origin define the axes)
 JOINTS = {
     "RevJoint": ("REVOLUTE", "axis"),
     "TransJoint": ("TRANSLATIONAL", "axis"),

@@ -62,7 +62,7 @@ class Directions:
 
 
 def axes(thing: Thing, twin_origin: Vector, origin: Vector, chosen: Chosen) -> Axes:
-    """The axes that a SetOrientation gives `thing`, which stands at `origin`.
+    """The axes that a SetOrientation sets for `thing`, which is at `origin`.
 
     A pair that is set on one side has the mirrored directions on the other; the third axis makes both
     right-handed (seen in decks).
@@ -86,7 +86,7 @@ def axes(thing: Thing, twin_origin: Vector, origin: Vector, chosen: Chosen) -> A
 
 
 def _skip_left(reader: Directions) -> None:
-    """The left half of a statement that gives both sides."""
+    """Skips the left half of a statement for both sides."""
     mode = reader.word()
     if mode == "ANGLES":
         reader.at += 4

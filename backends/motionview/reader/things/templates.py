@@ -43,7 +43,7 @@ class Template(Thing):
         return found
 
     def p_body(self) -> str | None:
-        """As it stands in its definition."""
+        """Text of the template in its definition."""
         definition = self.world.program.definitions.get(self.statement.arg(3))
         return None if definition is None or definition.statement is None else definition.statement.body
 
@@ -104,7 +104,7 @@ class Template(Thing):
 
 
 class _Piece(NamedTuple):
-    """The text between two values, and what stands in the braces behind it."""
+    """The text between two values, and the contents of the braces after it."""
 
     before: str
     text: str

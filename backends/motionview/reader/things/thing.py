@@ -59,7 +59,7 @@ class Thing:
     # -- properties
 
     def ask(self, key: str) -> Any:
-        """A property, kept."""
+        """A property, from the cache if it is known."""
         return self.world.demand(self, key)
 
     def compute(self, key: str) -> Any:
@@ -75,7 +75,7 @@ class Thing:
         """`thing.name` in an expression."""
         if hasattr(self, "p_" + key):
             return self.ask(key)
-        if key in ("l", "r"):  # one that stands where a pair may stand is both
+        if key in ("l", "r"):  # a single entity in place of a pair is both
             return self
         if key in ("id", "idstring"):
             return Identifier(self.name)
@@ -157,7 +157,7 @@ class Thing:
     # -- settings
 
     def settings(self, kind: str, part: str = "") -> list[Setting]:
-        """The Set statements of this entity, the one that counts last."""
+        """The Set statements of this entity, the effective one last."""
         return self.world.settings(self.declaration.slot, kind, part)
 
     def chosen(self, kind: str, part: str = "", symmetric: bool = False) -> Chosen | None:
@@ -201,7 +201,7 @@ class Thing:
         return []
 
     def marker_records(self) -> list[tuple[str, dict[str, Any]]]:
-        """Their names and what the list of values says of them."""
+        """Their names and their records in the list of values."""
         return [(m.name, m.record()) for m in self.markers()]
 
 
