@@ -88,10 +88,10 @@ class BenchCase:
     run: Run
     measure: Measure
     reference: Reference | None = None
-    repeats: bool = True  # whether the wall time is what it is about
+    repeats: bool = True  # true if it measures the wall time
     limit: float = 300.0  # [s] for one run; a solver that takes longer is stopped, and that is its result
     group: str = ""  # heading of the suite's page that it stands under
-    warm: bool = False  # whether the solver runs something else first, so that loading it does not count
+    warm: bool = False  # true if the solver runs something else first, so that loading it does not count
 
     def at(self, step: float | None) -> BenchCase:
         """The same case at another step [ms]."""

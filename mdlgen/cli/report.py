@@ -34,7 +34,7 @@ def report(
         typer.Option(
             "--stills",
             metavar="TIMES",
-            help="Pictures for print at these times, as 0,18,30,50ms, beside the page: still_18ms.png ...",
+            help="Pictures for print at these times, as 0,18,30,50ms, next to the page: still_18ms.png ...",
         ),
     ] = None,
     pictures: Pictures = False,
@@ -79,7 +79,7 @@ def report(
 @app.command()
 @reports_errors
 def export(
-    folder: Annotated[Path, typer.Argument(metavar="DIR", help="What `mdlgen run` wrote.")],
+    folder: Annotated[Path, typer.Argument(metavar="DIR", help="Output folder of `mdlgen run`.")],
     output: Annotated[
         Path,
         typer.Option(
@@ -114,7 +114,7 @@ def export(
 @app.command()
 @reports_errors
 def view(
-    folder: Annotated[Path, typer.Argument(metavar="DIR", help="What `mdlgen run` wrote.")],
+    folder: Annotated[Path, typer.Argument(metavar="DIR", help="Output folder of `mdlgen run`.")],
     quiet: Quiet = False,
     verbose: Verbose = False,
 ) -> None:

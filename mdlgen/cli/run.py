@@ -69,7 +69,7 @@ def run(
             "--checkpoint",
             metavar="SECONDS",
             min=0.0,
-            help="Seconds between the states that --resume goes on from; 60 if left out.",
+            help="Seconds between the states that --resume can continue from; 60 if left out.",
         ),
     ] = None,
     keep_partial: Annotated[
@@ -150,7 +150,7 @@ def run(
         checkpointer.free.set()
     Thread(target=_ahead, args=(checkpointer, model, paged, drawn, packages), daemon=True).start()
     if resume is None and runs.can_resume(folder) and not quiet:
-        say(f"{folder} holds a run that was cut off; this one takes its place (--resume {folder} goes on)")
+        say(f"{folder} holds a run that was cut off; this one replaces it (--resume {folder} continues it)")
     # a solver may talk on standard output, which is kept for results
     try:
         with progress_bar(quiet, request.check_step, verbose) as progress, solver_output(verbose):
@@ -161,7 +161,7 @@ def run(
         if keep_partial:
             _save_part(checkpointer, folder)
         if checkpointer.written:
-            say(f"mdlgen run --resume {folder} goes on with this run")
+            say(f"mdlgen run --resume {folder} continues this run")
         raise
     if not len(result.time):  # a static run that found no rest
         if checkpointer.written:

@@ -58,7 +58,7 @@ def fights(model: Model) -> Iterator[Lint]:
                 yield Lint(
                     "W166",
                     f"rules.{two}.do.{order.kind}.{order.name}",
-                    f"rules.{one} tells {order.name} something else at the same time; this one comes last",
+                    f"rules.{one} sets {order.name} to another value at the same time; this one comes last",
                     "leave one of them out, or give them other conditions",
                 )
 

@@ -174,7 +174,7 @@ def _check(stamp: bool) -> int:
                 print(f"{name} fits the kernels, whose comments are new; --stamp writes their digest into it")
                 wrong = 1
         except Unfit as error:
-            print(f"{error}; python -m mdlgen.program.build makes it anew")
+            print(f"{error}; python -m mdlgen.program.build rebuilds it")
             wrong = 1
     return wrong
 
@@ -196,7 +196,7 @@ def _libraries(verify: bool) -> int:
                 print(f"{there.name}: {'the same' if same else 'DIFFERS'}")
                 wrong |= not same
         except Unfit as error:
-            print(f"{error}; python -m mdlgen.program.build makes it anew")
+            print(f"{error}; python -m mdlgen.program.build rebuilds it")
             wrong = 1
     return wrong
 

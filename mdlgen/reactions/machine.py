@@ -57,7 +57,7 @@ class _Stage:
     """All that changes along a run."""
 
     sights: list[Sight]
-    true: list[bool]  # whether each rule held where it was looked at last
+    true: list[bool]  # true if each rule held where it was looked at last
     fired: list[int]  # how often each acted
     state: str
     pending: list[tuple[float, int]] = field(default_factory=list)  # times [ms] and rules that are due then

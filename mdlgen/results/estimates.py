@@ -68,7 +68,7 @@ class Estimate:
     scale: float
     unit: str
     judged: float | None = None  # scale by which run.tolerance judges it; None: it does not
-    # whether the two runs agree to less than the value, which is then the least that is estimated of such a
+    # true if the two runs agree to less than the value, which is then the least that is estimated of such a
     # quantity: the error is below it, and how far is not known
     below: bool = False
 

@@ -29,7 +29,7 @@ class Stop(NamedTuple):
 
     sheet: str
     part: str
-    held: np.ndarray  # whether a side of it is stopped there, (t,)
+    held: np.ndarray  # true if a side of it is stopped there, (t,)
     below: Floats  # how far the deeper corner of what is stopped is below the face that is touched [mm], (t,)
     force: Floats  # of the sheet on the plate [N], (t,)
 

@@ -53,7 +53,7 @@ class Outcome:
     unit: str
     margin: float | None
     of: str | None = None  # the sheet that is worst, of a measure that every sheet has
-    doubtful: bool = False  # whether the error of the run could turn it round
+    doubtful: bool = False  # true if the error of the run could reverse it
 
     def __str__(self) -> str:
         verdict = "pass" if self.passed else "FAIL"
@@ -325,7 +325,7 @@ def _of_summary(record: Mapping[str, Any], path: str) -> tuple[float | None, str
             node = node["xyz".index(part)]
             continue
         if not isinstance(node, Mapping):
-            raise ValueError(f"{path} goes on behind a number")
+            raise ValueError(f"{path} continues behind a number")
         key, unit = _key(node, part, path)
         node = node[key]
     if isinstance(node, Mapping):

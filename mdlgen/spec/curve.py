@@ -82,7 +82,7 @@ class Curve(Strict):
     )
     extrapolate: Literal["refuse", "linear"] = Field(
         default="refuse",
-        description="beyond the last point: refuse ends a run, naming the joint; linear goes on with the "
+        description="beyond the last point: refuse ends a run, naming the joint; linear continues with the "
         "slope at that point",
     )
 

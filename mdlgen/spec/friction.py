@@ -118,7 +118,7 @@ class Friction(Strict):
         strict=False,
         description="in place of static and dynamic: [slip speed, coefficient] as measured, speeds "
         f"increasing, 2 to {MOST_SPEEDS}; friction rises over the first speed. With md "
-        "and cd, or front and back, the coefficients count in times of the first one",
+        "and cd, or front and back, the coefficients count relative to the first one",
     )
     pressure: ByPressure | None = Field(
         default=None, description="friction by pressure; the same at any pressure where left out"
@@ -128,8 +128,8 @@ class Friction(Strict):
     )
     sticking: Annotated[float, quantity("N/mm", 0.0, open_low=True)] | None = Field(
         default=None,
-        description="stiffness along the faces of what sticks: of one pair of boxes of two sheets, of a "
-        "sheet and a roller, of one box and another part. What friction holds then yields by "
+        description="stiffness of sticking along the faces: of one pair of boxes of two sheets, of a "
+        "sheet and a roller, of one box and another part. A held part then yields by "
         "force/stiffness, does not creep, and slides from the limit mu N on. Where left out friction rises "
         "over the slip speed alone",
     )
@@ -191,7 +191,7 @@ class Friction(Strict):
                     f"speed.{k}: {1e3 * v:g} mm/s is not above the speed before, {1e3 * before:g} mm/s"
                 )
         if rows[0][1] == 0.0:
-            raise fail("speed.0: the first coefficient is 0; the others are in times of it")
+            raise fail("speed.0: the first coefficient is 0; the others are relative to it")
 
     def _with(self, static: float, dynamic: float) -> Friction:
         slow, fast = self.stiction_velocity, self.friction_velocity

@@ -131,7 +131,7 @@ class Mistakes:
             error.source = self.document.line(error.place)
         first, *others = errors[:MOST]
         if len(errors) > MOST:
-            others.append(SpecError(f"{len(errors) - MOST} more errors; mend these first"))
+            others.append(SpecError(f"{len(errors) - MOST} more errors; correct these first"))
         return first.with_others(others)
 
 

@@ -66,7 +66,7 @@ def _sense(scene: Scene, name: str, pairs: list[tuple[int, str, str]]) -> float:
     ways = [_cross(roller.axis, face) for face in found]
     if not ways:
         why = (
-            "no sheet that it has a contact with lies beside it at the start"
+            "no sheet that it has a contact with lies next to it at the start"
             if faces
             else "it meets no sheet"
         )

@@ -133,7 +133,7 @@ def test_surface_speed(center: str, axis: str, direction: str, speed: float) -> 
         (
             "x",
             "[13.5 mm, -20.5 mm, -40 mm]",
-            "no sheet that it has a contact with lies beside it at the start; give speed in place of "
+            "no sheet that it has a contact with lies next to it at the start; give speed in place of "
             "surface_speed and direction, as speed: 200 rad/s or -200 rad/s",
         ),
     ],

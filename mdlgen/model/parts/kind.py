@@ -59,12 +59,12 @@ class Kind(Generic[P]):
     part: type[P]  # what the Model has for each
     with_sheet: ClassVar[int]  # kind of its contacts with sheets
     with_roller: ClassVar[int] = NONE  # kind of its contacts with rollers; NONE: it has none
-    leads: ClassVar[bool] = False  # whether it may lead a sheet in any direction
-    curved: ClassVar[bool] = False  # whether its contact with a box takes longer than that of a flat face
+    leads: ClassVar[bool] = False  # true if it may lead a sheet in any direction
+    curved: ClassVar[bool] = False  # true if its contact with a box takes longer than that of a flat face
     by_area: ClassVar[bool] = (
-        False  # whether boxes share its force by the area that each covers, not by depth
+        False  # true if boxes share its force by the area that each covers, not by depth
     )
-    described: ClassVar[bool] = False  # whether `overview` has more of each than that it is there
+    described: ClassVar[bool] = False  # true if `overview` has more of each than that it is there
 
     @property
     def name(self) -> str:

@@ -126,7 +126,7 @@ class Curves(Frozen):
     slope: Floats  # [MPa]
     energy: Floats  # of a unit volume, up to the point [N/mm^2]
     rise: Floats  # slope beyond the last point [MPa], (curves,)
-    linear: NDArray[np.bool_]  # whether a joint may go there; else the run ends, (curves,)
+    linear: NDArray[np.bool_]  # true if a joint may go there; else the run ends, (curves,)
     of: Ints  # curve of each bushing, -1: none, (bushings,)
     axis: Ints  # axis of the bushing that follows it, 0: x, 1: y, (bushings,)
     length: Floats  # [mm], (bushings,)

@@ -58,7 +58,7 @@ class ArmPart(Frozen):
     torque: float  # of its spring as the run begins [N mm]
     stiffness: float  # [N mm/rad]
     damping: float  # [N mm ms/rad]
-    sprung: bool  # whether it has a spring or damping
+    sprung: bool  # true if it has a spring or damping
     angle: float = 0.0  # by which it is turned as the run begins, from the roller's centre as given [rad]
     speed: float = 0.0  # as the run begins [rad/ms]
     stops: StopsPart | None = None  # from the roller's centre as given
@@ -77,7 +77,7 @@ class RimPart(Frozen):
     friction: Floats  # relative to that of a contact
     stiffness: Floats
     restitution: Floats  # nan: that of a contact
-    own: tuple[bool, ...]  # whether the radius is given, and not the roller's
+    own: tuple[bool, ...]  # true if the radius is given, and not the roller's
     blend: float  # [rad]
     facets: tuple[int, ...]  # boxes by which a text shows each
 

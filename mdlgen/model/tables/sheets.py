@@ -95,7 +95,7 @@ class SheetPart(Frozen):
     d_y: float
     lines_x: Floats  # where the lines between boxes are, from the sheet's centre [mm], (n_x + 1,)
     lines_y: Floats  # (n_y + 1,)
-    graded: tuple[bool, bool]  # whether the lengths along x, along y are given box by box
+    graded: tuple[bool, bool]  # true if the lengths along x, along y are given box by box
     zones: tuple[ZonePart, ...]
     bend: Bend | None
     thickness: float
@@ -110,8 +110,8 @@ class SheetPart(Frozen):
     surface: bool
     clamp: Clamp | None
     bending: tuple[str, str]  # which of (k_tx, D_cd) and of (k_ty, D_md) the user gave
-    twist: bool  # whether joints have a twist of their own: D_twist was given, or layout plate
-    in_plane: bool  # whether k_tz was given
+    twist: bool  # true if joints have a twist of their own: D_twist was given, or layout plate
+    in_plane: bool  # true if k_tz was given
     rotation_damping: str  # inertia or paper, with a ratio (Eq. 7); time: Kelvin and Voigt's
     derived: dict[str, float]
     damping_times: tuple[float, float] | None = None  # of MD and CD [ms]; None: by a ratio

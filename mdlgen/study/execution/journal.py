@@ -38,7 +38,7 @@ class Journal:
             stream = open(path, "xb")  # noqa: SIM115
         except FileExistsError:
             raise RefusedError(
-                f"{folder}: holds a {_kind(path)} already; --resume goes on with it, or name another folder"
+                f"{folder}: holds a {_kind(path)} already; --resume continues it, or name another folder"
             ) from None
         except OSError as error:
             raise OutputError(f"{path}: cannot write: {error.strerror or error}") from None
