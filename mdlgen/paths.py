@@ -64,13 +64,13 @@ def cache(name: str) -> Path | None:
 
 
 def _cached() -> list[Path]:
-    """Files that were kept."""
+    """Number of cached files."""
     root = user_cache()
     return [path for folder in CACHED for path in (root / folder).rglob("*") if path.is_file()]
 
 
 def cache_size() -> int:
-    """Bytes that are kept."""
+    """Size of the cached files [bytes]."""
     return sum(path.stat().st_size for path in _cached())
 
 

@@ -151,7 +151,7 @@ def run(
     Thread(target=_ahead, args=(checkpointer, model, paged, drawn, packages), daemon=True).start()
     if resume is None and runs.can_resume(folder) and not quiet:
         say(f"{folder} holds a run that was cut off; this one replaces it (--resume {folder} continues it)")
-    # a solver may talk on standard output, which is kept for results
+    # a solver may print on standard output, which is reserved for results
     try:
         with progress_bar(quiet, request.check_step, verbose) as progress, solver_output(verbose):
             asked = request.solver, progress, request.check_step, checkpointer, processors()

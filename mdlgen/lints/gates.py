@@ -12,7 +12,7 @@ from mdlgen.model.overlaps.parts import HAIR
 from mdlgen.model.parts.kinds import kind_of
 from mdlgen.model.tables import Floats, MachinePart, Model, MovingPart
 
-_STATIONS = 25  # places between both ends at which a part is looked at
+_STATIONS = 25  # places between both ends at which a part is checked
 _SHARES = np.linspace(0.0, 1.0, 9)  # of each side of a block
 
 

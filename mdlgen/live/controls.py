@@ -117,7 +117,7 @@ def _control(
 
 
 def _group(data: Any, path: SpecPath) -> str:
-    """The part that a value is of; a contact or a load of a list is named by what it is between, or on."""
+    """The part that a value is of; a contact or a load of a list is named by its parts."""
     kind, *rest = path
     if len(rest) < 2:
         return str(kind)

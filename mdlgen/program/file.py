@@ -1,4 +1,4 @@
-"""A file NAME.program: one line of JSON that says what it is, and LLVM bitcode of its parts, compressed.
+"""A file NAME.program: one line of JSON with its head, and LLVM bitcode of its parts, compressed.
 
 Shared libraries NAME.TARGET.so in the same folder are made from that bitcode. The file has their digests.
 """

@@ -90,7 +90,7 @@ class Kernel:
         return self.compiled(*args)
 
     def compiled(self, *args: Any) -> Any:
-        """Calls what numba compiles; what is compiled in the first call is logged."""
+        """Calls the code of numba; compilations in the first call are logged."""
         dispatcher = self.dispatcher
         with _logged():
             found = dispatcher(*args)
@@ -347,7 +347,7 @@ def _plain(value: Any) -> Any:
 
 @contextmanager
 def _logged() -> Iterator[None]:
-    """Logs (INFO, how many so far) each function that numba compiles inside; what is loaded is not logged."""
+    """Logs (INFO, how many so far) each function that numba compiles inside; loaded code is not logged."""
     event = importlib.import_module("numba.core.event")
 
     class Counter(event.Listener):

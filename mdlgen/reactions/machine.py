@@ -57,7 +57,7 @@ class _Stage:
     """All that changes along a run."""
 
     sights: list[Sight]
-    true: list[bool]  # true if each rule held where it was looked at last
+    true: list[bool]  # true if each rule held at its last evaluation
     fired: list[int]  # how often each acted
     state: str
     pending: list[tuple[float, int]] = field(default_factory=list)  # times [ms] and rules that are due then
@@ -348,7 +348,7 @@ class Machine:
         }
 
     def restore(self, kept: dict[str, Any]) -> None:
-        """Goes back to what `kept` gave."""
+        """Restores the state that `kept` returned."""
         stage, before = self._stage, kept["before"]
         stage.sights = [Sight(**sight) for sight in kept["sights"]]
         for name in ("true", "fired", "state", "ended"):

@@ -20,7 +20,7 @@ class Sight:
     speed: float = math.nan
     skew: float = math.nan
     position: float = math.nan
-    looks: float = 0.0  # when it is looked at next
+    looks: float = 0.0  # time of its next evaluation
 
     def known(self, t: float) -> dict[str, Amount | float]:
         values = {

@@ -128,7 +128,7 @@ def colour(name: str, unit: str, values: Floats, ends: tuple[float, float] | Non
 
 
 def span(values: Floats, unit: str) -> tuple[float, float, str]:
-    """From where to where colours go, and what is beyond that, in words.
+    """Range of the colours, and the values beyond it, in words.
 
     To the greatest value, or to that which OUTLIERS of those above zero exceed, where these are FAR above it;
     from 0, or from the least where all are near the greatest.

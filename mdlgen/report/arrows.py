@@ -15,7 +15,7 @@ from mdlgen.units import PER_SECOND
 
 LENGTH, LEAST = 0.1, 0.35  # of the greatest arrow, relative to the scene's diagonal; of the least, in its own
 BREADTH = 0.16  # of a head, relative to the greatest length
-AWAY = np.array([-0.55, -0.75, 0.5])  # where a scene is first looked at from
+AWAY = np.array([-0.55, -0.75, 0.5])  # direction of the first view of a scene
 
 
 @dataclass(frozen=True)

@@ -148,7 +148,7 @@ def _pooled(estimates: dict[str, Estimate]) -> dict[str, Estimate]:
 
 
 def _raised(estimates: dict[str, Estimate], least: Callable[[str], float]) -> dict[str, Estimate]:
-    """None is below what is the least of it by its name."""
+    """None is below the least value for its name."""
     return {name: _at_least(found, least(name)) for name, found in estimates.items()}
 
 

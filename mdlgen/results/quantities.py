@@ -68,7 +68,7 @@ class Difference:
 
     @property
     def reported(self) -> float:
-        """The difference of what is reported, relative to the scale."""
+        """The difference of the reported number, relative to the scale."""
         return self.value if self.plain is None else self.plain
 
 
@@ -96,7 +96,7 @@ class Pair:
 
 
 def differences(result: Result, other: Result, judged: bool = False) -> dict[str, Difference]:
-    """The differences by name; of those alone that `run.tolerance` judges, which are quickly worked out.
+    """The differences by name; or only those that `run.tolerance` judges, which are quick to compute.
 
     Empty where the two do not end at the same time.
     """

@@ -293,8 +293,8 @@ class Result:
 
     @cached_property
     def tensions(self) -> tuple[Tension | None, ...]:
-        """Tension of each sheet along its way, as `results.tension` has it; worked out when first asked for,
-        and kept."""
+        """Tension of each sheet along its way, see `results.tension`; computed at the first access,
+        and cached."""
         from mdlgen.results.tension import tension_of
 
         return tuple(tension_of(self, k) for k in range(len(self.model.sheets)))
@@ -306,8 +306,8 @@ class Result:
 
     @cached_property
     def losses(self) -> Losses | None:
-        """Power that contacts take by friction and rolling, as `results.losses` has it; worked out when first
-        asked for, and kept."""
+        """Power that contacts take by friction and rolling, see `results.losses`; computed at the
+        first access, and cached."""
         from mdlgen.results.losses import losses
 
         return losses(self)

@@ -204,7 +204,7 @@ def _accounts(result: Result) -> dict[str, float | None]:
     for roller in result.model.rollers:
         if (energy := driven(result, roller)) is not None:
             given += float(energy[-1])
-            if not roller.turns:  # the solvers do not count what it takes to turn them
+            if not roller.turns:  # the solvers do not count the work of turning them
                 inertia = roller.loaded_inertia
                 rates = result.spin[[0, -1], roller.body] @ roller.axis
                 own += 0.5 * inertia * float(rates[1] ** 2 - rates[0] ** 2)

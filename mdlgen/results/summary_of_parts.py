@@ -84,7 +84,7 @@ def _drag(result: Result, row: int, drag: Floats) -> dict[str, float | None]:
 
 
 def _pressing(result: Result, part: RollerPart | PlanePart) -> dict[str, Any]:
-    """How a roller or a plane presses on what it touches."""
+    """Press force of a roller or a plane on its counterpart."""
     sheets = {s.name for s in result.model.sheets}
     on_sheets = [k for k, other in part_rows(result, part).items() if other in sheets]
     return {

@@ -1,4 +1,4 @@
-"""A scene: sheets, machine, contacts and what is asked of them."""
+"""A scene: sheets, machine, contacts and requirements."""
 
 from __future__ import annotations
 
@@ -332,7 +332,7 @@ class Scene(Strict):
     @field_validator("parameters", mode="wrap")
     @classmethod
     def _evaluated(cls, value: Any, handler: Callable[[Any], Any]) -> Any:
-        """Names of the form that parts have too, and for each what is wrong with its value."""
+        """Names of the form that parts have too, and for each the error of its value."""
         found = handler(value)
         parameters = current()
         if len(found) > MOST_PARAMETERS:

@@ -119,7 +119,7 @@ def _deep(item: Any, defaults: dict[str, Any], path: Path, source: Path, origins
 def _filled(
     item: Any, defaults: dict[str, Any], names: tuple[str, ...], path: Path, origins: dict[Path, Path]
 ) -> Any:
-    """A part, or a mapping of one, with what it does not say itself."""
+    """A part, or a mapping of one, with the defaults for its missing keys."""
     if not isinstance(item, dict):
         return item
     item = dict(item)

@@ -45,7 +45,7 @@ class Table:
         return {name: row for row, name in enumerate(self.names)}
 
     def only(self, keep: Callable[[str], bool]) -> Table:
-        """The rows whose names are kept."""
+        """The rows with the chosen names."""
         rows = [k for k, name in enumerate(self.names) if keep(name)]
         words = tuple(self.words[k] for k in rows) if self.words else ()
         names = tuple(self.names[k] for k in rows)

@@ -130,7 +130,7 @@ def _of_script(script: Script, reads: list[Read]) -> str | None:
 
 
 def _lint(subject: Subject, read: Read, found: Verification) -> None:
-    """A text of our own has nothing to remark, but for what is external by design."""
+    """A text of our own has no remarks, except on entities that are external by design."""
     _ = read.values
     for finding in read.reading.report.findings:
         if not (subject.only and finding.code == "external"):

@@ -53,9 +53,9 @@ def find_pairs(
     margin: float,
     limits: Limits = DEFAULT,
 ) -> Pairs:
-    """Possible pairs, those kept, and the bounds of each box (see the module).
+    """Possible pairs, those stored, and the bounds of each box (see the module).
 
-    Raises SpecError where more would be kept than the limits allow.
+    Raises SpecError where more would be stored than the limits allow.
     """
     parts = {p.name: p for p in machine}
     by_name = {s.name: s for s in sheets}

@@ -140,7 +140,7 @@ def plate_contact(
             heights.append(corners @ normal)
             shares.append(np.full(len(corners), stiffness / max(1, len(corners))))
     height, share = np.concatenate(heights), np.concatenate(shares)
-    # what is behind the plate does not touch it
+    # parts behind the plate do not touch it
     before = 0.5 * size[2] - height <= size[2]
     height, share = height[before], share[before]
 

@@ -136,7 +136,7 @@ class RollerPart(MachinePart):
     profile: Floats | None  # corners as given: time [ms], speed [rad/ms], (n, 2); None: speed and ramp
     one_way: OneWay | None  # with a drive: the speed is that of the shaft, which the roller may overrun
     press: Press | None
-    carried: tuple[float, float] = (0.0, 0.0)  # mass [g] and inertia about the axis [g mm^2] of what is on it
+    carried: tuple[float, float] = (0.0, 0.0)  # mass [g] and inertia about the axis [g mm^2] of meshes on it
     rim: RimPart | None = None
     arm: ArmPart | None = None
     cover: CoverPart | None = None
@@ -147,13 +147,13 @@ class RollerPart(MachinePart):
 
     @property
     def loaded_mass(self) -> float:
-        """Mass of the roller and of what is on it [g]."""
+        """Mass of the roller and of the meshes on it [g]."""
         mass, _ = self.carried
         return self.mass + mass
 
     @property
     def loaded_inertia(self) -> float:
-        """Inertia about the axis of the roller and of what is on it [g mm^2]."""
+        """Inertia about the axis of the roller and of the meshes on it [g mm^2]."""
         _, inertia = self.carried
         return self.inertia_axial + inertia
 

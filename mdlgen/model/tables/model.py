@@ -138,7 +138,7 @@ class Model(Frozen):
     tension: Tension | None
     parameters: tuple[Parameter, ...]
     run: RunSettings
-    unfollowed: tuple[tuple[str, str], ...] = ()  # formulas of what is no Parameter: places, texts
+    unfollowed: tuple[tuple[str, str], ...] = ()  # formulas of values without a Parameter: places, texts
     following: tuple[int, ...] = ()  # entries of the contacts whose smoothing follows from the speeds
     require: tuple[str, ...] = ()  # what a run is judged by, see spec.require
     author: str = ""  # of the design, for the head of the page

@@ -1,4 +1,4 @@
-"""Sensors and rules: what a machine sees of its sheets, and what it does then."""
+"""Sensors and rules of a machine: readings of its sheets, and actions."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from mdlgen.model.tables.bodies import Frozen
 
 @dataclass(frozen=True)
 class SensorPart(Frozen):
-    """A sensor: it sees what is on the way `way` from any point between both `ends`."""
+    """A sensor: it sees sheets on the way `way` from any point between both `ends`."""
 
     name: str
     kind: str  # beam, point or line

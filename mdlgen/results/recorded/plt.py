@@ -31,7 +31,7 @@ def is_plot(text: str) -> bool:
 
 
 def read(text: str, file: Path) -> Recording:
-    """A plot file. Raises OutputError with the line of what is damaged."""
+    """A plot file. Raises OutputError with the damaged line."""
     lines = text.splitlines()
     count = _count(lines, file)
     body = _HEADER + 2 * count

@@ -129,7 +129,7 @@ class Index:
 
 @dataclass(frozen=True)
 class Indices:
-    """Parts of a measure's variance: `first` of a variable alone, `total` with what it does with others."""
+    """Parts of a measure's variance: `first` of a variable alone, `total` with its interactions."""
 
     first: Index
     total: Index

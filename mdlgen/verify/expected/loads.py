@@ -18,7 +18,7 @@ def load_points(model: Model) -> Floats:
 
 
 def load_times(times: Times) -> tuple[float, ...]:
-    """Times at which loads are looked at [s]; where none changes any one will do."""
+    """Times at which loads are evaluated [s]; a single one where none changes."""
     return times.get(OF_LOADS, (0.0,))
 
 

@@ -50,7 +50,7 @@ _RUN_ATTRIBUTES = {
 
 
 class ReadBack:
-    """Tables of some values; `stations` are the times [s] at which the laws of drives are looked at."""
+    """Tables of some values; `stations` are the times [s] at which the laws of drives are evaluated."""
 
     def __init__(self, stations: Mapping[str, tuple[float, ...]], markers: Mapping[str, Any] | None = None):
         self.stations = stations
