@@ -1,4 +1,4 @@
-"""Where the templates and samples lie, and how files are written so that nothing is lost."""
+"""Folders of templates and samples, and writing of files so that nothing is lost."""
 
 from __future__ import annotations
 

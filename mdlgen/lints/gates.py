@@ -132,7 +132,7 @@ def _points(blocks: Floats) -> Floats:
 
 
 def _inside(model: Model, part: MachinePart, places: Floats) -> float:
-    """How deep places (k, n, 3) are in a part at most [mm]."""
+    """Greatest depth of places (k, n, 3) in a part [mm]."""
     bodies, kind = model.bodies, kind_of(part)
     middle = np.broadcast_to(places.mean(axis=1, keepdims=True), places.shape)
     deep = kind.inside(part, places, middle, bodies.position[part.body], bodies.rotation[part.body])

@@ -195,7 +195,7 @@ def _row(solver: str, name: str, runs: list[list[Run]]) -> Row:
 
 
 class Apart(NamedTuple):
-    """How far two runs are apart in something, and may be, as parts of its scale."""
+    """Difference of two runs in a quantity and the allowed one, relative to its scale."""
 
     part: float
     allowed: float

@@ -21,7 +21,7 @@ MOST_BYTES = 50_000_000
 
 
 class Unfit(Exception):
-    """Why a program cannot be used here."""
+    """The reason why a program cannot be used here."""
 
 
 @dataclass(frozen=True)
@@ -66,7 +66,7 @@ class Head:
 
 
 def library(path: Path, target: str) -> Path:
-    """Where the library of a program for a target lies."""
+    """Path of the library of a program for a target."""
     return path.with_name(f"{path.stem}.{target}.so")
 
 

@@ -246,7 +246,7 @@ class _Unfailing:
 
 
 def _folder(kernel: Kernel, whole: bool) -> Path | None:
-    """Where numba keeps a kernel: a folder for exactly what it is compiled from.
+    """Cache folder of numba for a kernel: one for exactly its sources.
 
     numba notices that a function's own file has changed, but not a file whose functions it calls: a solver
     would go on with an older law without a word.

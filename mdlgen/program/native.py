@@ -155,7 +155,7 @@ def _elsewhere(target: Target, part: bytes) -> Iterator[Callable[[], bytes | Non
 
 
 def _address(symbol: str) -> int:
-    """Where a function of the system stands. Raises Unfit."""
+    """Address of a function of the system. Raises Unfit."""
     names = ("ucrtbase", "msvcrt", "vcruntime140") if sys.platform == "win32" else (None, "libm.so.6")
     for name in names:
         try:

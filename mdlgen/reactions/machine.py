@@ -44,7 +44,7 @@ class RunawayError(Exception):
 
 
 class _Edge(NamedTuple):
-    """That a sensor's light changes: which one, when [ms], and the poses of the sheet there."""
+    """A change of a sensor: its number, the time [ms], and the poses of the sheet there."""
 
     eye: int
     sheet: int
@@ -110,8 +110,8 @@ class Machine:
     # -- when to look
 
     def ahead(self, t: float, step: float, poses: Poses) -> float:
-        """Up to which time from t on steps of a length may be taken before it looks again [ms]: at least to a
-        part of one."""
+        """Time from t on up to which steps of a length may be taken before the next `look` [ms]: at least a
+        part of one step."""
         stage, until = self._stage, math.inf
         if stage.pending:
             until = min(time for time, _ in stage.pending)
@@ -129,8 +129,8 @@ class Machine:
         return max(until, t + SOON * step)
 
     def _next(self, eye: Eye, sight: Sight, t: float, step: float, poses: Poses) -> float:
-        """When a sensor is looked at next: where it changes within the step, at its end where it is near, or
-        as soon as a sheet can be there."""
+        """Time of the next reading of a sensor: where it changes within the step, at its end where it is
+        near, or as soon as a sheet can be there."""
         if self._changes(eye, sight, poses):
             return t  # by a sheet that has just come in, or left
         off = self._off(eye, poses)
@@ -149,7 +149,7 @@ class Machine:
         return 2.0 * away / (v + root) if root > 0.0 else math.inf
 
     def _first(self, changed: Callable[[float], bool], step: float) -> float:
-        """How far ahead [ms] something changes; the step, where it does not change in that."""
+        """Time until a change [ms]; the step, where there is no change in it."""
         if not changed(step):
             return step
         low, high = 0.0, step

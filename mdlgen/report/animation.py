@@ -85,8 +85,8 @@ def at_the_start(model: Model, colours: list[dict[str, Any]]) -> dict[str, Any]:
 
 
 def _stays(model: Model, stays: Floats | None) -> dict[str, Any]:
-    """When the boxes of each sheet are drawn: the first box, how many, and from when to when [ms], null:
-    never, and to the end; nothing where all are there throughout."""
+    """Times at which the boxes of each sheet are drawn: the first box, their number, begin and end [ms],
+    null: never, and to the end; nothing where all are there throughout."""
     if stays is None:
         return {}
     rows = [

@@ -81,7 +81,7 @@ def overview_parts(record: dict[str, Any]) -> list[str | Rows]:
 
 
 def _counts(record: dict[str, Any]) -> list[str]:
-    """How many parts of each kind there are; of most kinds where there are some."""
+    """Number of parts of each kind; most kinds are listed only where there are some."""
     found = []
     for kind in KINDS:
         parts = record[kind.table]

@@ -1,4 +1,4 @@
-"""Where a sheet lies on a roller, and how fast both are there."""
+"""Contact line of a sheet on a roller, and the velocities of both there."""
 
 from __future__ import annotations
 

@@ -36,7 +36,7 @@ class Hold(NamedTuple):
 
 
 def holds(result: Result, stay: Stay, together: np.ndarray | None) -> list[Hold]:
-    """Where a driven part slips on a sheet that is held, in one stay; `together`: see results.stacked.
+    """Intervals in which a driven part slips on a held sheet, in one stay; `together`: see results.stacked.
 
     None of a sheet that the scene clamps or supports. A sheet under a moving one is held back, and one that
     touches a rim in its first turn may wait for another sector of it: both wait.

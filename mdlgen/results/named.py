@@ -125,7 +125,7 @@ class ProbeResult(_Named):
 
 
 def sheets(result: Result) -> Mapping[str, SheetResult]:
-    """By name; a run that stored no state has none."""
+    """Results of the sheets, by name; a run that stored no state has none."""
     found = {}
     for k, sheet in enumerate(result.model.sheets if len(result.time) else ()):
         place, rate, yaw = result.sheet_motion(k)
@@ -145,7 +145,7 @@ def sheets(result: Result) -> Mapping[str, SheetResult]:
 
 
 def rollers(result: Result) -> Mapping[str, RollerResult]:
-    """By name; a run that stored no state has none."""
+    """Results of the rollers, by name; a run that stored no state has none."""
     found = {}
     for roller in result.model.rollers if len(result.time) else ():
         rate = result.spin[:, roller.body] @ roller.axis * PER_SECOND
@@ -176,7 +176,7 @@ def rollers(result: Result) -> Mapping[str, RollerResult]:
 
 
 def probes(result: Result) -> Mapping[str, ProbeResult]:
-    """By name; a run that stored no state has none."""
+    """Results of the probes, by name; a run that stored no state has none."""
     found = {}
     for k, probe in enumerate(result.model.probes if len(result.time) else ()):
         place, rate = result.anchor_motion(k)

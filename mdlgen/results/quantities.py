@@ -51,7 +51,7 @@ LEAST = 1e-300
 
 @dataclass(frozen=True)
 class Difference:
-    """How far another run is from one in one quantity."""
+    """Difference of two runs in one quantity."""
 
     name: str
     value: float  # relative to the scale

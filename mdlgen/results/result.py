@@ -74,7 +74,7 @@ class Energy:
 
 @dataclass(frozen=True)
 class Chaos:
-    """How far two runs part that differ in the places of all sheets at the start alone."""
+    """Divergence of two runs that differ only in the places of all sheets at the start."""
 
     quantity: str  # that run.tolerance judges, by its name
     start_mm: float  # by which the starts differ
@@ -255,7 +255,7 @@ class Result:
 
     @property
     def probes(self) -> Mapping[str, ProbeResult]:
-        """Where each probe went, by name."""
+        """Motion of each probe, by name."""
         from mdlgen.results.named import probes
 
         return probes(self)

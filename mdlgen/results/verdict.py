@@ -186,8 +186,8 @@ def _judged(result: Result, record: Mapping[str, Any]) -> list[Outcome]:
 def doubts(
     result: Result, record: Mapping[str, Any], others: Sequence[tuple[Result, Mapping[str, Any]]]
 ) -> dict[str, float]:
-    """By how much each value may be wrong: SAFETY_REST times the difference to the first of the runs at other
-    steps, each with its record; of an event the number of times by which they differ. inf where the error
+    """Error bound of each value: SAFETY_REST times the difference to the first of the runs at other
+    steps, each with its record; for an event the number of times by which they differ. inf where the error
     of a complete run is not known; none where no other run was asked for."""
     if not result.usable or not result.model.require:
         return {}

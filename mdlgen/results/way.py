@@ -1,4 +1,4 @@
-"""How far a sheet has gone along its own way, how fast, and how it stands to it: also round a bend."""
+"""Displacement and speed of a sheet along its own path, and its angle to the path: also round a bend."""
 
 from __future__ import annotations
 

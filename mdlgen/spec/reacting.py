@@ -76,7 +76,7 @@ def movable(scene: Scene, pattern: str, path: tuple[str | int, ...]) -> list[str
 
 
 def _motion(part: object) -> Pivot | Slide | None:
-    """How a part moves that is prescribed; None: it does not."""
+    """Prescribed motion of a part; None: it has none."""
     for key in ("pivot", "slide"):
         motion = getattr(part, key, None)
         if motion is not None and getattr(motion, motion.inert) is None:

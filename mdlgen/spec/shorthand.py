@@ -140,7 +140,7 @@ def _filled(
 
 
 def in_the_text(path: Path, origins: dict[Path, Path]) -> Path:
-    """Where a value of the scene stands in the text."""
+    """Path in the text of a value of the scene."""
     for _ in range(_MOST_STEPS):
         end = next((end for end in range(len(path), 0, -1) if path[:end] in origins), 0)
         if not end:

@@ -1,4 +1,4 @@
-"""Where a scene is from, and its text: with the comments of the file, and what was changed since."""
+"""Origin of a scene, and its text: with the comments of the file, and the changes since."""
 
 from __future__ import annotations
 

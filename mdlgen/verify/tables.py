@@ -108,7 +108,7 @@ class Compared(NamedTuple):
 
 
 def compare(kind: str, expected: Table, found: Table | None, words: bool = True) -> Compared:
-    """How far `found` is from `expected`."""
+    """Difference of `found` from `expected`."""
     if found is None:
         found = Table((), expected.columns, np.zeros((0, len(expected.columns))), np.zeros((0, 0)))
     differences = _names(kind, expected, found)

@@ -1,4 +1,4 @@
-"""Where a pressed roller touches its counterpart, and where it or a pressed plate stands in equilibrium."""
+"""Places where a pressed roller touches its counterpart, and where it or a pressed plate is in balance."""
 
 from __future__ import annotations
 
@@ -226,7 +226,7 @@ def _push(
 
 
 def _root(push: Callable[[float], float], low: float, high: float) -> float:
-    """Where a push that falls from `low` to `high` is none, to the last bit."""
+    """Root of a push that falls from `low` to `high`, to the last bit."""
     for _ in range(200):
         middle = 0.5 * (low + high)
         if middle in (low, high):

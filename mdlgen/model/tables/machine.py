@@ -34,7 +34,7 @@ class Press(Frozen):
 
     @property
     def off(self) -> float:
-        """How far from its balance it begins [mm]."""
+        """Distance of its start from its balance [mm]."""
         return 0.0 if self.balance is None else abs(self.start - self.balance)
 
 
@@ -249,7 +249,7 @@ class PlanePart(MachinePart):
 
     @property
     def travel(self) -> Floats:
-        """How far it may go along each global axis, either way: by the length of its spring [mm], (3,)."""
+        """Largest displacement along each global axis, either way: the length of its spring [mm], (3,)."""
         return np.zeros(3) if self.press is None else self.press.free_length * np.abs(self.press.direction)
 
 

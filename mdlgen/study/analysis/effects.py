@@ -44,7 +44,7 @@ class MainEffect:
 
     @property
     def range(self) -> float:
-        """From the least mean of a group to the greatest."""
+        """Range from the least mean of a group to the greatest."""
         means = [group.mean for group in self.groups]
         return max(means) - min(means)
 

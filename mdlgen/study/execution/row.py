@@ -50,7 +50,7 @@ class CaseRow:
         return self.kind in (OK, INACCURATE)
 
     def json(self) -> dict[str, Any]:
-        """As the journal has it."""
+        """The row in the form of the journal."""
         record = asdict(self)
         del record["files"]
         return record

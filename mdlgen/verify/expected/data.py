@@ -32,7 +32,7 @@ FACTORS = {
 
 
 def factor(unit: str) -> float:
-    """From the Model's unit to that of the text, for units that only a user's parameters have, too."""
+    """Factor from the Model's unit to that of the text, for units that only a user's parameters have, too."""
     if unit in FACTORS:
         return FACTORS[unit]
     _, mass, time, _ = parse_unit(unit).dimension

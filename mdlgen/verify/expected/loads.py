@@ -12,7 +12,7 @@ from mdlgen.verify.tables import Table, table
 
 
 def load_points(model: Model) -> Floats:
-    """Where each load acts [mm], (n, 3)."""
+    """Place of each load [mm], (n, 3)."""
     loads, bodies = model.loads, model.bodies
     return bodies.position[loads.body] + np.einsum("nij,nj->ni", bodies.rotation[loads.body], loads.local)
 

@@ -131,7 +131,7 @@ class ReadBack:
         return [*axis, *laws], said
 
     def _load(self, name: str, record: Mapping[str, Any]) -> Row:
-        """Where a load acts, its forces at all times of loads, and its moments."""
+        """Place of a load, its forces at all times of loads, and its moments."""
         found = [*record["origin"]]
         for word in ("force", "torque"):
             for time in load_times(self.stations):
