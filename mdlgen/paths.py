@@ -290,7 +290,7 @@ def _way_back(path: Path, kept: Path) -> Callable[[], None]:
         return lambda: os.unlink(path)
     try:
         os.link(path, kept)
-    except OSError:  # no links here: what has been written stays
+    except OSError:  # no links here: the written file stays
         return lambda: None
     return lambda: os.replace(kept, path)
 

@@ -17,7 +17,7 @@ from mdlgen.model.tables import Model
 if TYPE_CHECKING:
     from mdlgen.results.result import Result
 
-# A change of any of these may change what a solver gives for the same scene.
+# A change of any of these may change a solver's result for the same scene.
 SHARED_CODE = ("mdlgen.mechanics", "mdlgen.model")
 
 

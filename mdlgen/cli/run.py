@@ -238,7 +238,7 @@ def _ahead(
     checkpointer.free.wait(LONG)
     before = sys.getswitchinterval()
     sys.setswitchinterval(INTERVAL)
-    # what fails here fails again where it is needed, and is reported there
+    # a failure here occurs again where the module is needed, and is reported there
     with contextlib.suppress(Exception):
         from mdlgen.report.figures.pictures import load_drawing
         from mdlgen.report.text import summary_text  # noqa: F401

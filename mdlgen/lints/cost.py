@@ -24,9 +24,9 @@ from mdlgen.model.passing import share
 from mdlgen.model.tables import BOX_BOX, Model
 
 START = 4e-3  # [s]
-PASSES = 1.8  # what the coarser runs add to the last one
-# Of one step [s]; BAND for each box and the square of the boxes on the shorter side of its sheet, which is
-# what a factor of its joints takes.
+PASSES = 1.8  # time of all passes over that of the last one
+# Times of one step [s]. BAND counts for each box times the square of the number of boxes on the shorter side
+# of its sheet: a factor of its joints takes so long.
 STEP, BOX, BAND = 6e-6, 0.03e-6, 2.1e-9
 PAIR, CURVED, LAID = 0.26e-6, 1.06e-6, 0.8e-6  # with a roller or a plane, a guide or a mesh, another sheet
 MOST_LAID = 4  # of such pairs a box touches so many at a time

@@ -41,7 +41,7 @@ class _Held(NamedTuple):
     row: int
     far: float  # by which it then creeps [mm]
     used: float  # part of the limit of friction that holds it
-    still: float  # for how long what it is held on stands [ms]
+    still: float  # time for which the holding part stands still [ms]
 
 
 def on_slope(model: Model) -> Iterator[Lint]:

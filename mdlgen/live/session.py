@@ -81,7 +81,7 @@ class Session:
         self._publish()
         await self._worker.end()
 
-    # what a page asks for
+    # requests of a page
 
     def state(self) -> dict[str, Any]:
         """All small data; large data are requested by their version."""
@@ -154,7 +154,7 @@ class Session:
         text = with_values(self.text, str(self.file), self.turned)
         loads(text, str(self.file), (), self.file.parent)
         write_atomic(self.file, text)
-        # what the command line set is in the file where it was turned
+        # values of --set are in the file once they were changed on the page
         self.sets = tuple(item for item in self.sets if item.partition("=")[0].strip() not in self.turned)
         self.turned = {}
         self._take(text)

@@ -175,7 +175,7 @@ def compared(
         for process in both:
             stack.callback(process.close)
         for name, sets in samples.items():
-            for process in both:  # loads, or compiles, what the sample needs
+            for process in both:  # loads, or compiles, the code for the sample
                 process.run(solver, name, sets)
             runs = [[process.run(solver, name, sets) for process in both] for _ in range(repeat)]
             yield _row(solver, name, [list(kind) for kind in zip(*runs, strict=True)])

@@ -39,8 +39,8 @@ class Head:
 
     digest: str  # of the kernels that it was made from, and of their statements alone (program.digests)
     statements: str
-    code: str  # SHA-256 of what follows the head
-    versions: dict[str, str]  # of what made it
+    code: str  # SHA-256 of the bytes after the head
+    versions: dict[str, str]  # of the packages that made it
     entries: dict[str, tuple[Variant, ...]]
     external: tuple[str, ...]  # functions of the system that it calls
     parts: tuple[int, ...]  # bytes of bitcode of each part

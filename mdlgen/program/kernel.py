@@ -35,7 +35,7 @@ LOG = logging.getLogger("mdlgen.compiling")
 # they are marked OWNS because they make arrays.
 BORROWS: dict[str, Any] = {"_nrt": False}
 OWNS: dict[str, Any] = {"_nrt": True}
-# A kernel without its own forceinline inherits it from the kernel that calls it first. It also determines
+# A kernel without its own forceinline inherits it from the kernel that calls it first. Inlining also decides
 # where sums are rounded. A kernel marked CALLED is not inlined into kernels that are inlined themselves.
 CALLED: dict[str, Any] = {"forceinline": False}
 # A sum of products may be rounded once, where the processor has an instruction for it.

@@ -190,7 +190,7 @@ class Machine:
                 return first + self._first(changed, step)
         return t + AHEAD * step
 
-    # -- what happens
+    # -- events
 
     def look(self, t: float, step: float, poses: Poses) -> list[Order]:
         """The orders due at the time t [ms], for a solver with steps of that length.

@@ -121,7 +121,7 @@ class Eye:
         turn = poses.r[box].reshape(3, 3)
         normal, way = turn[:, 2], self._way / self._reach
         sees = 0.5 * (self._ends[0] + self._ends[1])
-        # the sheet goes as a whole in its plane, however it is bent and its boxes tremble
+        # the sheet moves as a whole in its plane, even if it is bent and its boxes tremble
         axes = poses.r.reshape(-1, 3, 3)[:, :, :2]
         along = self._share[sheet] @ (poses.u[:, None, :] @ axes)[:, 0]
         rate = turn[:, :2] @ along

@@ -61,7 +61,7 @@ def arrows(model: Model) -> list[Arrow]:
         greatest = max((size for *_, size in raw), default=0.0)
         for part, name, at, way, says, size in raw:
             length = most * max(size / greatest, LEAST) if greatest > 0.0 else most
-            begin = at - way * length if name == "press" else at  # a press ends at what it pushes
+            begin = at - way * length if name == "press" else at  # a press arrow ends at its part
             found.append(Arrow(part, name, begin, way * length, says))
     return found
 

@@ -30,14 +30,14 @@ ROUND_OFF = 1e-9  # of places [mm]
 class Met:
     """One row of contacts as a run begins."""
 
-    name: str  # what a user calls the contact
+    name: str  # name of the contact for the user
     one: str
     other: str
     deep: float | None  # [mm], below zero by how far two rounds are apart; None: not computed
     stiffness: float  # [N/mm^1.5]
     friction: tuple[float, float]  # static and dynamic
     restitution: float
-    pairs: int | None  # of bodies, that are kept; None: searched for as the run goes
+    pairs: int | None  # number of stored pairs of bodies; None: searched for during the run
 
     @property
     def says(self) -> str:

@@ -31,7 +31,7 @@ class Hold(NamedTuple):
     first: int
     duration: float  # [ms]
     part: float  # its mean speed along the surface, as a part of that of the surface
-    by: tuple[str, ...]  # what else it touches, the greatest normal force first
+    by: tuple[str, ...]  # other parts that it touches, the greatest normal force first
     jammed: bool
 
 

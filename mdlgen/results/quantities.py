@@ -39,7 +39,7 @@ from mdlgen.results.strain import apart, sheet_joints
 
 # Stored times that differ by less than this part of the run are the same; they differ by round-off.
 SAME_TIME = 1e-9
-# Parts of a length, radius, thickness or turn below which a motion is not what errors are relative to.
+# Least scale of a motion, as a part of a length, radius, thickness or turn.
 TENTH = 0.1
 # Part of the greatest force or penetration; below it a force or depth is not used as a scale.
 GRAZE = 0.01

@@ -141,7 +141,7 @@ class Result:
     checks: bool = False  # true where the run only checks another one at twice its step
     estimates: dict[str, Estimate] = field(default_factory=dict)  # see `results.estimates.complete`
     coarser: tuple[Result, ...] = field(default=(), repr=False)  # runs from which these follow, then none
-    # what sensors saw and rules did, in the order of time, as events have it
+    # readings of sensors and actions of rules, in the order of time, in the form of events
     reactions: tuple[dict[str, Any], ...] = ()
     halved: bool = False  # one side was solved, the other is its mirror image
     versions: dict[str, str] = field(default_factory=dict)

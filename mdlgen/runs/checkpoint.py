@@ -43,7 +43,7 @@ class Checkpointer:
         self.lock = Lock()
         self.free = Event()
         self.written = folder is not None and provenance is None
-        self._last: dict[int, float] = {}  # when each pass was written, or what there was when it began
+        self._last: dict[int, float] = {}  # time at which each pass was written, or began
 
     def begin(self, number: int) -> None:
         """A pass of that number begins: the same one in each run of a scene, however many go on at a time."""

@@ -105,7 +105,7 @@ def written(data: dict[str, Any], origins: dict[Path, Path], fill: Fill) -> None
         if not isinstance(nip, dict) or not all(isinstance(nip.get(side), dict) for side in SIDES):
             continue
         own = dict(zip(SIDES, names_of(name, nip), strict=True))
-        # what stands under rollers, too, counts there: --set rollers.entry_upper.mass=..
+        # a value given under rollers counts there: --set rollers.entry_upper.mass=..
         given = {side: rollers.get(roller) for side, roller in own.items()}
         nip = nip | {side: merged(nip[side], g) for side, g in given.items() if isinstance(g, dict)}
         made = _Written(data, name, nip, fill)

@@ -18,7 +18,7 @@ from mdlgen.units import parse_quantity
 if TYPE_CHECKING:
     from mdlgen.spec.scene import Scene
 
-MOST_RULES, MOST_SENSORS = 200, 100  # convention: far above what a machine has
+MOST_RULES, MOST_SENSORS = 200, 100  # convention: far above the needs of a machine
 
 
 def words(scene: Scene) -> dict[str, Dimension | None]:

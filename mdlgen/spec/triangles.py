@@ -31,7 +31,7 @@ _WORDS |= {19: b"endloop"}
 _FACET = 20  # words of a triangle in ASCII before its endfacet
 _CORNERS = [8, 9, 10, 12, 13, 14, 16, 17, 18]
 _LINE = re.compile(rb"[^\r\n]*(?:\r\n?|\n|\Z)")
-# of an OBJ file, what says nothing of the surface
+# keywords of an OBJ file without effect on the surface
 _IGNORED = frozenset((b"vn", b"vt", b"vp", b"o", b"g", b"s", b"mtllib", b"usemtl", b"l", b"p"))
 
 

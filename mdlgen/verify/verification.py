@@ -45,7 +45,7 @@ _NOT_IN_DECK = ("points", "vectors", "data", "mesh files")
 # A script for MotionSolve has no surfaces either.
 _NOT_IN_SCRIPT = (*_NOT_IN_DECK, "surfaces")
 _UNSET = CONTACT_NUMBERS.index("normal_trans_vel")
-_MOST_OBJECTS = 2  # of what the own script makes: a file with more is not read further
+_MOST_OBJECTS = 2  # number of objects relative to the own script: a file with more is not read further
 _MACHINE = frozenset(("bodies", "graphics"))
 
 

@@ -56,7 +56,7 @@ class Kind(Generic[P]):
     """One kind of part. Lengths in mm, bodies and places global where nothing else is said."""
 
     table: ClassVar[str]  # where they stand in a scene: `rollers`
-    part: type[P]  # what the Model has for each
+    part: type[P]  # class of each in the Model
     with_sheet: ClassVar[int]  # kind of its contacts with sheets
     with_roller: ClassVar[int] = NONE  # kind of its contacts with rollers; NONE: it has none
     leads: ClassVar[bool] = False  # true if it may lead a sheet in any direction

@@ -203,7 +203,7 @@ def plate_balance(
     push = _push(center, direction, spring, contacts)
     if push(0.0) == 0.0:  # nothing pushes it: anywhere about is balance
         return 0.0, 0.0
-    # neither spring nor contacts push more the further it goes
+    # the push of spring and contacts never grows along the way
     for end, sign in ((-far, -1.0), (far, 1.0)):
         if sign * push(end) > 0.0:
             return end, push(end)

@@ -37,7 +37,7 @@ from mdlgen.model.tables.sheets import SheetPart
 P = TypeVar("P")
 
 GROUND = -1
-# A contact that goes from touching to too deep in fewer than so many steps may be held by finer ones.
+# A contact that gets too deep within fewer steps than this after touching may be held by finer steps.
 FEW_STEPS = 4
 AXES = ("x", "y", "z")
 

@@ -42,7 +42,7 @@ def _corner() -> Floats:
 
 
 VIEWS = (_SIDE, _corner())
-Frame = tuple[Floats, Floats]  # least and greatest of what a panel shows [mm], (2,) each
+Frame = tuple[Floats, Floats]  # least and greatest coordinates in a panel [mm], (2,) each
 Over = Callable[[Any, Floats, Frame], None]  # draws over a panel, with a view and its frame
 
 

@@ -21,7 +21,7 @@ from mdlgen.results.recorded.recording import Recording
 from mdlgen.results.result import Result
 from mdlgen.results.wording import ROUND_OFF
 
-ROUNDED = 1e-5  # of the end of the run: what times with six digits are known to
+ROUNDED = 1e-5  # relative to the end of the run: precision of times with six digits
 _LAG = 0.1  # of the common time: the largest shift that is looked for
 _LAGS = 101  # shifts tried, before the best is found more closely
 _HALVINGS = 40

@@ -36,7 +36,7 @@ def factor(unit: str) -> float:
     if unit in FACTORS:
         return FACTORS[unit]
     _, mass, time, _ = parse_unit(unit).dimension
-    # the text has what weighs by kg; with a time, a mass is a force N by s^2/mm
+    # a unit of mass without time is in kg; with a time, a mass is a force N by s^2/mm
     return (KG if (mass, time) == (1.0, 0.0) else 1e-6**mass) * SECOND**time
 
 
