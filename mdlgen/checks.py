@@ -1,4 +1,4 @@
-"""Lints over a Model: what is allowed, but is probably not what was meant. Each has a code and a remedy.
+"""Lints over a Model: inputs that are allowed, but probably not meant. Each has a code and a remedy.
 
 A lint is a function in `mdlgen/lints`, a line in CHECKS, and its meaning in `mdlgen/explain.py`.
 """

@@ -97,7 +97,7 @@ class Condition:
 
 @lru_cache(maxsize=1024)
 def condition(text: str) -> Condition:
-    """Reads a text. Raises ValueError with what is wrong, in one line."""
+    """Reads a text. Raises ValueError with the fault, in one line."""
 
     def stated(found: re.Match[str]) -> str:
         return found[0] if found[1] in _LOGIC else f"{found[1]}.{found[2]}"

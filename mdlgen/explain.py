@@ -62,7 +62,7 @@ SCENE = {
         "from the sheet's."
     ),
     "W113": (
-        "What a drive does after the end of the run is not seen. Often the ramp or the duration has a "
+        "A change of a drive after the end of the run has no effect. Often the ramp or the duration has a "
         "wrong unit."
     ),
     "W114": (
@@ -85,13 +85,13 @@ SCENE = {
     "W118": (
         "A pressed roller faces another one near by, and the list of contacts does not name the two. Where "
         "no sheet is between them nothing holds the spring, and the roller moves into the other one. Add a "
-        "contact of the two rollers in addition to those with the sheet."
+        "contact of the two rollers to those with the sheet."
     ),
     "W119": (
         "A roller and a plane, a guide or a mesh are in each other's way, and no contact holds them apart. "
         "A run in which they, apart at its start, come to overlap by more than 0.05 mm ends with both names. "
-        "Give the two a contact. What overlaps from the start, as a roller that looks out of a hole in a "
-        "plate, is not counted, nor is a roller that presses on that one from above it and is no wider and "
+        "Give the two a contact. A pair that overlaps from the start, as a roller that stands in a hole in a "
+        "plate, does not count, nor does a roller that presses on that one from above it and is no wider and "
         "no larger."
     ),
     "W120": (
@@ -103,7 +103,7 @@ SCENE = {
         "At the start a sheet is nearer to a roller, a plane or a guide than three quarters of its "
         "thickness, or in it, and no contact names the two. A run ends, with both names, where the middle of "
         "a sheet comes 0.05 mm into such a part. A sheet that is in a part from the start is taken to pass "
-        "through a hole, and its run continues. Meshes are not looked at."
+        "through a hole, and its run continues. Meshes are not checked."
     ),
     "W122": (
         "A pressed roller begins in balance with the sheet that it touches. That sheet, and those below it, "
@@ -168,7 +168,7 @@ SCENE = {
     "W134": (
         "The run is long, and one value makes it at least four times as long as with a usual one: a step, a"
         " time between outputs or a tolerance that is very small, very many boxes, air between sheets, or a "
-        "duration of more than a second. Often its unit is wrong. What a run takes is estimated from boxes, "
+        "duration of more than a second. Often its unit is wrong. The time of a run is estimated from boxes, "
         "pairs and steps, mostly within a factor of 2."
     ),
     "W135": (
@@ -284,13 +284,13 @@ SCENE = {
     ),
     "W173": (
         "A part that turns about a pivot, or slides, goes through another part of the machine that it has no "
-        "contact with. A run does not stop it there. Looked at are 25 places of its way, between the least "
-        "and the greatest that its profile or its positions have. What it overlaps where it is given stands"
-        " in a hole that is not modelled, and is left alone."
+        "contact with. A run does not stop it there. Checked are 25 places of its path, between the least "
+        "and the greatest that its profile or its positions have. A part that it overlaps where it is given"
+        " has a hole that is not modelled, and is not checked."
     ),
     "W174": (
         "`positions` names places, so that a profile and rules can name them. One that neither of them names "
-        "has no effect, except on the space that is reserved for the motion."
+        "only widens the checked range of the motion."
     ),
     "W175": (
         "The profile of a part continues after the end of the run, so the part does not come to where its "
@@ -306,8 +306,8 @@ SCENE = {
     ),
     "W178": (
         "Two sheets in one place end a run. The gap of two sheets of a stream is its time between them times "
-        "their speed, less their length; it has to be above zero, and more with jitter and skew. What slows "
-        "the first one down in the machine makes it less."
+        "their speed, less their length; it has to be above zero, and more with jitter and skew. If the "
+        "machine slows the first one down, the gap is smaller."
     ),
     "W179": (
         "A sheet that has not come yet is not there: nothing meets it, it costs nothing, and nothing is "
@@ -324,7 +324,7 @@ SCENE = {
     ),
     "W183": "A load, or gravity, has a factor over time that is 0 from the start of the run to its end.",
     "W184": (
-        "A factor over time has corners after the end of the run. What it does there is not simulated. A "
+        "A factor over time has corners after the end of the run. Its values there are not simulated. A "
         "static analysis has the factor of the first corner."
     ),
     "W185": (

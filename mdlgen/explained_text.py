@@ -25,7 +25,7 @@ TEXT = {
         "rotational stiffness, which often is a slip in the order 3 k, 3 c, 3 kt, 3 ct."
     ),
     "comment": (
-        "A comment is inside *BeginMDL, where no file of MotionView has one. Before *BeginMDL it is safe."
+        "A comment is within *BeginMDL. No file of MotionView has one there. Before *BeginMDL it is safe."
     ),
     "condition": (
         "The condition of an *If has no value, since something in it is not known; its branch is left out."
@@ -41,7 +41,7 @@ TEXT = {
     "duplicate": "One name is defined twice in one scope.",
     "evaluate": "An expression has no value: division by zero, a text where a number is due, and the like.",
     "external": (
-        "What a name stands for is made by something that is not read here, such as the user's model or a "
+        "A name is defined in a file that is not read here, such as the user's model or a "
         "private include, so its value is not known. That is no mistake of the text."
     ),
     "function": "A function in an expression is not known, or takes other values.",

@@ -17,7 +17,7 @@ from typing import Any, Literal, NamedTuple, Protocol, cast
 
 from mdlgen.units import UNIT_TEXT, Unit, parse_unit
 
-# A name may hold what Python reserves (a roller `in`), so names are taken out before the text is parsed.
+# A name may be reserved in Python (a roller `in`), so names are taken out before the text is parsed.
 _NAME = r"(?<![\w.])[A-Za-z_]\w*(?:\.\w+)*"
 _NUMBER = r"(?<![\w.])(?:[0-9]+(?:\.[0-9]*)?|\.[0-9]+)(?:[eE][-+]?[0-9]+)?"
 _WORD = re.compile(_NAME, re.ASCII)

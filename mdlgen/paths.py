@@ -1,4 +1,4 @@
-"""Where the templates and samples lie, and how files are written so that nothing is lost."""
+"""Folders of templates and samples, and writing of files so that nothing is lost."""
 
 from __future__ import annotations
 
@@ -64,13 +64,13 @@ def cache(name: str) -> Path | None:
 
 
 def _cached() -> list[Path]:
-    """Files that were kept."""
+    """Number of cached files."""
     root = user_cache()
     return [path for folder in CACHED for path in (root / folder).rglob("*") if path.is_file()]
 
 
 def cache_size() -> int:
-    """Bytes that are kept."""
+    """Size of the cached files [bytes]."""
     return sum(path.stat().st_size for path in _cached())
 
 
@@ -290,7 +290,7 @@ def _way_back(path: Path, kept: Path) -> Callable[[], None]:
         return lambda: os.unlink(path)
     try:
         os.link(path, kept)
-    except OSError:  # no links here: what has been written stays
+    except OSError:  # no links here: the written file stays
         return lambda: None
     return lambda: os.replace(kept, path)
 

@@ -1,4 +1,4 @@
-"""The Jinja environments of what is written: text, decks, pages."""
+"""The Jinja environments for the written files: MDL files, decks, pages."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from mdlgen.paths import cache, templates
 
 
 class Compiled(FileSystemBytecodeCache):
-    """Compiled templates, which are used all the same where they cannot be kept, as on a full disk."""
+    """Compiled templates, which also work where they cannot be cached, as on a full disk."""
 
     def dump_bytecode(self, bucket: Bucket) -> None:
         """Writes them, if that can be done."""
@@ -22,7 +22,7 @@ class Compiled(FileSystemBytecodeCache):
 
 
 def environment(room: str, *, autoescape: bool, **settings: Any) -> Environment:
-    """An environment for the templates in the folder of that name; what is undefined is an error in all."""
+    """An environment for the templates in the folder of that name; undefined names are errors."""
     compiled = cache(f"templates/{room}")  # compiling them takes longer than a text of 200 boxes
     return Environment(
         bytecode_cache=Compiled(str(compiled)) if compiled else None,

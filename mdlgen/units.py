@@ -12,7 +12,7 @@ from collections.abc import Sequence
 from functools import lru_cache
 from typing import NamedTuple
 
-PER_SECOND = 1000.0  # what is per ms, as speeds in mm/ms and rad/ms are, to what is per s
+PER_SECOND = 1000.0  # converts values per ms, as speeds in mm/ms and rad/ms, to values per s
 
 
 class Unit(NamedTuple):
@@ -95,7 +95,7 @@ class UnknownUnit(ValueError):
 
 @lru_cache(maxsize=512)
 def parse_unit(text: str) -> Unit:
-    """`N*mm/rad`, `N/mm^1.5`, `m/s^2` as a Unit. Raises ValueError with what is wrong."""
+    """`N*mm/rad`, `N/mm^1.5`, `m/s^2` as a Unit. Raises ValueError with the fault."""
     factor, dimension = 1.0, (0.0, 0.0, 0.0, 0.0)
     for sign, word in re.findall(r"(^|[*/·])([^*/·]*)", _powers(text)):
         match = _FACTOR.fullmatch(word.strip())

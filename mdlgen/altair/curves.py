@@ -19,7 +19,7 @@ from mdlgen.model.tables import (
 
 # A text takes straight lines between points: as many as keep it within this part of the greatest stress.
 TEXT_TOLERANCE = 1e-6
-# Straight on beyond the last point, a text goes to this many times its strain.
+# An MDL file continues straight beyond the last point, up to this many times its strain.
 TEXT_BEYOND = 10.0
 
 

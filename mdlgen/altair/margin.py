@@ -6,7 +6,7 @@ from mdlgen.model.tables import Model
 
 
 def margin_note(model: Model) -> tuple[str, ...]:
-    """That a local run may need more pairs than the text lists, where some are left out."""
+    """The note that a run with mdlgen may need more pairs than the text lists, where some are left out."""
     if len(model.pairs) >= model.pairs.possible:
         return ()
     return (

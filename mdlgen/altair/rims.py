@@ -41,7 +41,7 @@ def sides(roller: RollerPart) -> list[Side]:
 
 
 class Meeting(NamedTuple):
-    """One contact statement of a kept pair."""
+    """One contact statement of a stored pair."""
 
     pair: int
     a: Side
@@ -66,7 +66,7 @@ class Meeting(NamedTuple):
 
 
 def meetings(model: Model) -> Iterator[Meeting]:
-    """The statements of all kept pairs, in their order."""
+    """The statements of all stored pairs, in their order."""
     of = {roller.body: sides(roller) for roller in model.rollers}
     for pair, (a, b) in enumerate(zip(model.pairs.a.tolist(), model.pairs.b.tolist(), strict=True)):
         for one in of.get(a, [WHOLE]):

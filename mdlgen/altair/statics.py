@@ -1,4 +1,4 @@
-"""How MotionSolve is asked for a state of rest."""
+"""Settings of MotionSolve for a state of rest."""
 
 from __future__ import annotations
 

@@ -16,15 +16,15 @@ if TYPE_CHECKING:
 class Finding:
     """One number that a result is judged by; above its tolerance the result is wrong."""
 
-    quantity: str  # what the error is of, and what it is relative to
+    quantity: str  # name of the quantity, and of its scale
     error: float
     tolerance: float | None = None  # None: the step was forced, and nothing was promised
     details: dict[str, float] = field(default_factory=dict)
     expected: float | None = None  # of a row of the validation: the closed form or the published number,
-    found: float | None = None  # what the solver got,
+    found: float | None = None  # the solver's value,
     unit: str = ""  # of both,
     source: str = ""  # where the expected number is from,
-    because: str = ""  # and why the tolerance is what it is
+    because: str = ""  # and the reason for the tolerance
 
 
 # The result and, for a case that has one, its reference.
@@ -88,10 +88,10 @@ class BenchCase:
     run: Run
     measure: Measure
     reference: Reference | None = None
-    repeats: bool = True  # whether the wall time is what it is about
+    repeats: bool = True  # true if it measures the wall time
     limit: float = 300.0  # [s] for one run; a solver that takes longer is stopped, and that is its result
     group: str = ""  # heading of the suite's page that it stands under
-    warm: bool = False  # whether the solver runs something else first, so that loading it does not count
+    warm: bool = False  # true if the solver runs something else first, so that loading it does not count
 
     def at(self, step: float | None) -> BenchCase:
         """The same case at another step [ms]."""

@@ -1,4 +1,4 @@
-"""States of a finer run, kept on disk under a name that says of what scene, solver and code they are."""
+"""States of a finer run, stored on disk under a name that depends on scene, solver and code."""
 
 from __future__ import annotations
 
@@ -17,12 +17,12 @@ from mdlgen.model.tables import Model
 if TYPE_CHECKING:
     from mdlgen.results.result import Result
 
-# A change of any of these may change what a solver gives for the same scene.
+# A change of any of these may change a solver's result for the same scene.
 SHARED_CODE = ("mdlgen.mechanics", "mdlgen.model")
 
 
 def file_of(reference: Reference, module: str, folder: Path) -> Path:
-    """Where the states of a reference are kept: a name by the content of scene, solver and code."""
+    """Path of the states of a reference: a name by the content of scene, solver and code."""
     run = reference.run
     digest = hashlib.sha256(run.text().encode())
     digest.update(repr((run.sets, run.without, reference.solver)).encode())

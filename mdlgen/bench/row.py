@@ -1,4 +1,4 @@
-"""A row of bench.json: one number of one case, with what it took to get it."""
+"""A row of bench.json: one number of one case, with its cost."""
 
 from __future__ import annotations
 

@@ -23,7 +23,7 @@ from mdlgen.errors import OutputError, SpecError
 Say = Callable[[str], None]
 # Suffix of a solver's name for another state of mdlgen.
 BESIDE = ", beside"
-# A reference is finer than what is measured; it may take this long [s].
+# A reference is finer than the measured run; it may take this long [s].
 REFERENCE_LIMIT = 1800.0
 
 
@@ -177,7 +177,7 @@ def _outcome(
 
 @dataclass
 class References:
-    """The finer runs that cases are compared with, each run once and kept in `folder`."""
+    """The finer runs that cases are compared with, each run once and stored in `folder`."""
 
     folder: Path
     say: Say

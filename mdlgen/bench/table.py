@@ -27,7 +27,7 @@ def markdown(found: Bench) -> str:
         f"{machine['cpu']}, {machine['cores']} cores, one thread used; Python {machine['python']}; "
         + ", ".join(f"{name} {number}" for name, number in versions.items())
         + ". Wall time is the median of the repeats, solving only; the runs at other steps from which a "
-        "solver estimates its error are not counted. A solve is one of the linear equations of a step.",
+        "solver estimates its error are listed separately. A solve is one of the linear equations of a step.",
     ]
     for suite in dict.fromkeys(row.suite for row in found.rows):
         rows = [row for row in found.rows if row.suite == suite]

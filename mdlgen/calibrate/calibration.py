@@ -1,4 +1,4 @@
-"""A calibration: what is asked, whether the scene can answer it, and what is found."""
+"""A calibration: the request, a check that the scene can answer it, and the result."""
 
 from __future__ import annotations
 

@@ -23,7 +23,7 @@ class Fit(NamedTuple):
 
     unit: str  # as in the spec; empty for a plain number
     instead: str | None = None  # the other form of the same bending, or of the damping, which is taken away
-    greatest: float | None = None  # what the spec allows
+    greatest: float | None = None  # greatest value that the spec allows
 
 
 FITS = {

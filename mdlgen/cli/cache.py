@@ -1,4 +1,4 @@
-"""`mdlgen cache`: what is kept for the next command, and whether the shipped programs fit."""
+"""`mdlgen cache`: the cached files, and a check that the shipped programs fit."""
 
 from __future__ import annotations
 

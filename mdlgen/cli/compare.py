@@ -16,13 +16,13 @@ PAGE = "compare.html"
 @app.command()
 @reports_errors
 def compare(
-    folder: Annotated[Path, typer.Argument(metavar="DIR", help="What `mdlgen run` wrote.")],
+    folder: Annotated[Path, typer.Argument(metavar="DIR", help="Output folder of `mdlgen run`.")],
     recorded: Annotated[
         Path,
         typer.Option(
             "--with",
             metavar="FILE",
-            help="What another program recorded of the same scene: NAME.plt or NAME_requests.csv of "
+            help="Recording of the same scene by another program: NAME.plt or NAME_requests.csv of "
             "MotionSolve, or a table with the columns of series.csv.",
         ),
     ],

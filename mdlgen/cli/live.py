@@ -46,7 +46,7 @@ def live(
     _check_extra()
     registry.check_solver(solver)
     DEFAULT.raised(limits or ())
-    read(spec)  # what cannot be read is not followed
+    read(spec)  # a file that cannot be read is not followed
     from mdlgen.live.server import listening, serve
     from mdlgen.live.session import Session
 

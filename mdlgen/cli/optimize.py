@@ -107,7 +107,7 @@ def optimize(
     folder: Annotated[Path | None, typer.Option("--folder", hidden=True)] = None,
     resume: Annotated[
         bool,
-        typer.Option("--resume", help="Go on with the search in DIR: mdlgen optimize --resume DIR."),
+        typer.Option("--resume", help="Resume the search in DIR: mdlgen optimize --resume DIR."),
     ] = False,
     workers: Annotated[
         int,
@@ -196,7 +196,7 @@ def optimize(
                 with count(quiet, "runs") as progress:
                     rows, best = study.run(wanted, journal, runner, progress)
             except KeyboardInterrupt:
-                say(f"{len(journal.rows)} runs are done; mdlgen optimize --resume {where} goes on")
+                say(f"{len(journal.rows)} runs are done; mdlgen optimize --resume {where} continues")
                 raise
     files = [*write(where, wanted.task, rows, parquet=False), write_page(where, wanted, rows, best)]
     if best is None:

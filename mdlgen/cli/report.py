@@ -79,7 +79,7 @@ def report(
 @app.command()
 @reports_errors
 def export(
-    folder: Annotated[Path, typer.Argument(metavar="DIR", help="What `mdlgen run` wrote.")],
+    folder: Annotated[Path, typer.Argument(metavar="DIR", help="Output folder of `mdlgen run`.")],
     output: Annotated[
         Path,
         typer.Option(
@@ -114,7 +114,7 @@ def export(
 @app.command()
 @reports_errors
 def view(
-    folder: Annotated[Path, typer.Argument(metavar="DIR", help="What `mdlgen run` wrote.")],
+    folder: Annotated[Path, typer.Argument(metavar="DIR", help="Output folder of `mdlgen run`.")],
     quiet: Quiet = False,
     verbose: Verbose = False,
 ) -> None:

@@ -69,7 +69,7 @@ def run(
             "--checkpoint",
             metavar="SECONDS",
             min=0.0,
-            help="Seconds between the states from which --resume continues; 60 if left out.",
+            help="Seconds between the states that --resume can continue from; 60 if left out.",
         ),
     ] = None,
     keep_partial: Annotated[
@@ -150,8 +150,8 @@ def run(
         checkpointer.free.set()
     Thread(target=_ahead, args=(checkpointer, model, paged, drawn, packages), daemon=True).start()
     if resume is None and runs.can_resume(folder) and not quiet:
-        say(f"{folder} holds a run that was cut off; this one takes its place (--resume {folder} goes on)")
-    # a solver may talk on standard output, which is kept for results
+        say(f"{folder} holds a run that was cut off; this one replaces it (--resume {folder} continues it)")
+    # a solver may print on standard output, which is reserved for results
     try:
         with progress_bar(quiet, request.check_step, verbose) as progress, solver_output(verbose):
             asked = request.solver, progress, request.check_step, checkpointer, processors()
@@ -238,7 +238,7 @@ def _ahead(
     checkpointer.free.wait(LONG)
     before = sys.getswitchinterval()
     sys.setswitchinterval(INTERVAL)
-    # what fails here fails again where it is needed, and is reported there
+    # a failure here occurs again where the module is needed, and is reported there
     with contextlib.suppress(Exception):
         from mdlgen.report.figures.pictures import load_drawing
         from mdlgen.report.text import summary_text  # noqa: F401

@@ -1,4 +1,4 @@
-"""The scene itself: a first one, what it comes to, what a code means, the schema."""
+"""Commands on the scene itself: a first scene, its overview, the meaning of a code, the schema."""
 
 from __future__ import annotations
 

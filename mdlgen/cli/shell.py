@@ -270,7 +270,7 @@ def _located(error: MdlgenError, spec: Path | None) -> MdlgenError:
 PREPARING = "preparing the solver, once on this machine"
 COMPILING = "compiling the solver, once on this machine (some minutes)"
 ABOUT = 290
-# Seconds between two lines about what holds a run up.
+# Seconds between two lines about a cause of delay.
 BETWEEN = 5.0
 
 

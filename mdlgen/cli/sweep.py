@@ -180,7 +180,7 @@ def sweep(
                     rows = study.run(wanted, journal, runner, progress)
             except (KeyboardInterrupt, OutputError):
                 done = f"{len(journal.rows)} of {len(wanted.cases)} cases are done"
-                say(f"{done}; mdlgen sweep --resume {folder} goes on")
+                say(f"{done}; mdlgen sweep --resume {folder} continues")
                 raise
     from mdlgen.study.output.files import write, write_findings
 

@@ -265,7 +265,7 @@ def verify(
         typer.Option(
             "--script",
             metavar="FILE.py",
-            help="Its companion script: FILE_mview.py next to --text if left out.",
+            help="Its companion script: FILE_mview.py in the folder of --text if left out.",
         ),
     ] = None,
     deck: Annotated[

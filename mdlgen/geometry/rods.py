@@ -1,4 +1,4 @@
-"""How deep a rod, a cylinder with an axis, is in blocks and in triangles."""
+"""Depth of a rod, a cylinder with an axis, in blocks and in triangles."""
 
 from __future__ import annotations
 
@@ -31,7 +31,7 @@ class Rod(NamedTuple):
     half: float
 
     def reach(self, way: Floats) -> float:
-        """How far it goes either way of its centre along a unit vector."""
+        """Half of its extent along a unit vector."""
         lean = float(self.axis @ way)
         return self.half * abs(lean) + self.radius * math.sqrt(max(0.0, 1.0 - lean * lean))
 

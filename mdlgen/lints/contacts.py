@@ -142,7 +142,7 @@ def deep(depth: float, sheet: SheetPart) -> bool:
 
 
 def _boxes_under(sheet: SheetPart, roller: RollerPart) -> float:
-    """How many boxes of a sheet, flat where it starts, a roller stands on."""
+    """Number of boxes of a sheet, flat at the start, that a roller stands on."""
     shares = balance.covered_shares(sheet, roller.center, roller.axis, roller.width, False)
     return sum(share for share, _ in shares)
 

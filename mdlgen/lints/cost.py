@@ -24,14 +24,14 @@ from mdlgen.model.passing import passing, share
 from mdlgen.model.tables import BOX_BOX, Model
 
 START = 4e-3  # [s]
-# Outside the kernels [s]: of each state that is stored; of each step of a machine with rules, which is asked
-# whether it has to end early, and more with each sensor and each rule; of each step with sheets that come and
-# go. Fitted to samples stall, rubber_nip, register, sorter and stream, whose processor time is 0.5 to 1.9
-# times what is said here where that of transport_tilted is 1.
+# Times outside the kernels [s]: of each stored state; of each step of a machine with rules, which is checked
+# for an early end, and more for each sensor and each rule; of each step with sheets that come and go. Fitted
+# to the samples stall, rubber_nip, register, sorter and stream. Their processor time is 0.5 to 1.9 times the
+# prediction where that of transport_tilted is 1.
 OUTPUT, LOOK, SENSOR, RULE, PASSING = 0.2e-3, 0.05e-3, 0.02e-3, 0.01e-3, 0.08e-3
-PASSES = 1.8  # what the coarser runs add to the last one
-# Of one step [s]; BAND for each box and the square of the boxes on the shorter side of its sheet, which is
-# what a factor of its joints takes.
+PASSES = 1.8  # time of all passes over that of the last one
+# Times of one step [s]. BAND counts for each box times the square of the number of boxes on the shorter side
+# of its sheet: a factor of its joints takes so long.
 STEP, BOX, BAND = 6e-6, 0.03e-6, 2.1e-9
 PAIR, CURVED, LAID = 0.26e-6, 1.06e-6, 0.8e-6  # with a roller or a plane, a guide or a mesh, another sheet
 MOST_LAID = 4  # of such pairs a box touches so many at a time

@@ -41,7 +41,7 @@ class _Held(NamedTuple):
     row: int
     far: float  # by which it then creeps [mm]
     used: float  # part of the limit of friction that holds it
-    still: float  # for how long what it is held on stands [ms]
+    still: float  # time for which the holding part stands still [ms]
 
 
 def on_slope(model: Model) -> Iterator[Lint]:
@@ -130,13 +130,13 @@ def _names(names: Iterable[str]) -> str:
 
 
 def _still_for(roller: RollerPart, duration: float) -> float:
-    """How long the drive of a roller holds it still in a run [ms]; 0 of one without a drive."""
+    """Time for which the drive of a roller holds it still in a run [ms]; 0 without a drive."""
     times, rates = _speeds(roller, duration)
     return float(np.diff(times)[(rates[1:] == 0.0) & (rates[:-1] == 0.0)].sum())
 
 
 def _way_of(roller: RollerPart, duration: float) -> float:
-    """How far its drive moves the surface of a roller in a run, back and forth [mm]; 0 without a drive."""
+    """Distance that its drive moves the surface of a roller in a run, back and forth [mm]; 0 without one."""
     times, rates = _speeds(roller, duration)
     return float(np.trapezoid(np.abs(rates), times)) * roller.reach
 

@@ -12,7 +12,7 @@ from mdlgen.model.overlaps.parts import HAIR
 from mdlgen.model.parts.kinds import kind_of
 from mdlgen.model.tables import Floats, MachinePart, Model, MovingPart
 
-_STATIONS = 25  # places between both ends at which a part is looked at
+_STATIONS = 25  # places between both ends at which a part is checked
 _SHARES = np.linspace(0.0, 1.0, 9)  # of each side of a block
 
 
@@ -132,7 +132,7 @@ def _points(blocks: Floats) -> Floats:
 
 
 def _inside(model: Model, part: MachinePart, places: Floats) -> float:
-    """How deep places (k, n, 3) are in a part at most [mm]."""
+    """Greatest depth of places (k, n, 3) in a part [mm]."""
     bodies, kind = model.bodies, kind_of(part)
     middle = np.broadcast_to(places.mean(axis=1, keepdims=True), places.shape)
     deep = kind.inside(part, places, middle, bodies.position[part.body], bodies.rotation[part.body])

@@ -1,4 +1,4 @@
-"""Lints of sensors and rules: what sees nothing, what never acts, what is ordered two things at once."""
+"""Lints of sensors and rules: sensors that see nothing, rules that never act, and conflicting orders."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from mdlgen.formulas import Amount
 from mdlgen.lints.lint import Lint
 from mdlgen.model.tables import Model, Order, RulePart, SensorPart
 
-_TIMES = 1001  # at which a condition of time alone is looked at (convention)
+_TIMES = 1001  # at which a condition of time alone is evaluated (convention)
 
 
 def sees_nothing(model: Model) -> Iterator[Lint]:
@@ -58,7 +58,7 @@ def fights(model: Model) -> Iterator[Lint]:
                 yield Lint(
                     "W166",
                     f"rules.{two}.do.{order.kind}.{order.name}",
-                    f"rules.{one} tells {order.name} something else at the same time; this one comes last",
+                    f"rules.{one} sets {order.name} to another value at the same time; this one comes last",
                     "leave one of them out, or give them other conditions",
                 )
 

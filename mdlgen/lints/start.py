@@ -55,7 +55,7 @@ def _deep_start(model: Model, row: int, where: str, part: str, depth: float, she
 
 
 def overlap(one: SheetPart, two: SheetPart) -> float:
-    """How deep two flat sheets are in each other at the start [mm]; 0 where they are not parallel."""
+    """Depth of two flat sheets in each other at the start [mm]; 0 where they are not parallel."""
     normal = one.rotation[:, 2]
     if abs(float(normal @ two.rotation[:, 2])) < 1 - FLAT**2:
         return 0.0

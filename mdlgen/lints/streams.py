@@ -112,7 +112,7 @@ def first_of_each(model: Model, found: Iterable[Lint]) -> Iterator[Lint]:
     names = re.compile(r"\b(" + "|".join(map(re.escape, streams)) + r")\b")
     seen: set[tuple[str, str]] = set()
     for lint in found:
-        # what differs from sheet to sheet of such a finding is its number, and when it comes in
+        # such findings differ from sheet to sheet by the number, and by the time at which it comes in
         place = names.sub(lambda word: streams[word[1]], lint.where)
         text = place if place != lint.where else names.sub(lambda word: streams[word[1]], str(lint))
         if (lint.code, text) not in seen:

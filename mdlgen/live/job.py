@@ -174,7 +174,7 @@ class _Reporter:
         self.job, self.model, self.send, self.cancelled, self.keep = job, model, send, cancelled, keep
         self.begun = self.reported = self.parted = time.perf_counter()
         self.cost = 0.0  # of the last part [s]
-        self.furthest = 0.0  # end of what has been shown [ms]
+        self.furthest = 0.0  # end of the part that has been shown [ms]
 
     def __call__(self, at: float, end: float, steps: int, touching: int) -> None:
         if self.cancelled():

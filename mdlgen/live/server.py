@@ -153,7 +153,7 @@ async def _events(session: Session) -> AsyncIterator[str]:
 
 
 async def _follow(session: Session) -> None:
-    """Looks at the scene again when its file changes, or one that it names."""
+    """Reads the scene again when its file changes, or one that it names."""
     while True:
         folders = session.folders()
 

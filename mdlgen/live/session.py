@@ -81,10 +81,10 @@ class Session:
         self._publish()
         await self._worker.end()
 
-    # what a page asks for
+    # requests of a page
 
     def state(self) -> dict[str, Any]:
-        """All but what is large: that is asked for by its version."""
+        """All small data; large data are requested by their version."""
         return {
             "file": str(self.file),
             "scene": self._scene,
@@ -154,13 +154,13 @@ class Session:
         text = with_values(self.text, str(self.file), self.turned)
         loads(text, str(self.file), (), self.file.parent)
         write_atomic(self.file, text)
-        # what the command line set is in the file where it was turned
+        # values of --set are in the file once they were changed on the page
         self.sets = tuple(item for item in self.sets if item.partition("=")[0].strip() not in self.turned)
         self.turned = {}
         self._take(text)
 
     def look(self) -> None:
-        """Looks at the file, which may have been edited, or one that it names."""
+        """Checks if the file, or one that it names, was edited."""
         try:
             text = read(self.file)
         except MdlgenError as error:
@@ -214,7 +214,7 @@ class Session:
         self._timer("grace", GRACE, lambda: self._do(self._restart()))
 
     def _go_on(self) -> None:
-        """Begins with what is to be done next."""
+        """Starts the next job."""
         if self._job is not None or not self._todo or self._ended:
             return
         if self._todo[0] == FULL and (self._held or self._drawing):
@@ -273,7 +273,7 @@ class Session:
         newest = (self._job.text, dict(self._job.turned)) == (self.text, self.turned)
         self._job, self._progress, self._word = None, None, ""
         if record["kind"] == "ended" and record["how"] in (DRAFT, FULL):
-            # the page shows what there is in any case; `mark` says what is wrong with it
+            # the page shows the result in any case; `mark` names its faults
             self.errors = [_plain(record["mark"])] if record["mark"] else []
             self._drafted = self._drawing = newest and record["how"] == DRAFT
             self._show(record["how"], record["status"], body, record["solved_s"])

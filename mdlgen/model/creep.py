@@ -1,4 +1,4 @@
-"""How fast what regularised friction holds creeps (Eq. 12), and how far it may."""
+"""Creep speed of parts that regularised friction holds (Eq. 12), and the allowed creep."""
 
 from __future__ import annotations
 

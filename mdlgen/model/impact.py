@@ -1,4 +1,4 @@
-"""How long a body is in contact when it strikes: what a solver's step is measured by."""
+"""Contact time of a body that strikes: it determines a solver's step."""
 
 from __future__ import annotations
 

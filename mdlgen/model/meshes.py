@@ -42,7 +42,7 @@ def check_balance(model: Model) -> None:
 
 
 def loaded(rollers: tuple[RollerPart, ...], meshes: tuple[MeshPart, ...]) -> tuple[RollerPart, ...]:
-    """The rollers with mass and inertia of what is on them."""
+    """The rollers with mass and inertia of the meshes on them."""
     made = []
     for index, roller in enumerate(rollers):
         mass = inertia = 0.0

@@ -92,7 +92,7 @@ def carries(moving: MovingPart, points: Floats) -> Floats:
 
 
 def since(bodies: Bodies, body: int, rotation: Floats) -> Floats:
-    """By which rotation a body has turned since the run began, (..., 3, 3), from its rotation now."""
+    """Rotation of a body since the run began, (..., 3, 3), from its rotation now."""
     return rotation @ bodies.rotation[body].T
 
 
@@ -111,7 +111,7 @@ def watched(moving: MovingPart, center: Floats) -> tuple[Floats, Floats] | None:
 
 
 def moves(moving: MovingPart) -> str:
-    """How a part moves, in words."""
+    """Motion of a part, in words."""
     way = "turns about a pivot" if moving.turns else "slides"
     low, high = (np.degrees(end) if moving.turns else end for end in moving.ends)
     unit = "deg" if moving.turns else "mm"

@@ -77,7 +77,7 @@ def _face(one: RollerPart, other: RollerPart, thickness: float) -> bool:
 
 
 def _nearest(one: RollerPart, other: RollerPart) -> float:
-    """How near the axes of two parallel rollers may come to each other on their slides and arms [mm]."""
+    """Least distance of the axes of two parallel rollers on their slides and arms [mm]."""
     moving = [roller for roller in (one, other) if roller.press is not None or roller.arm is not None]
     gap = _across(other.center - one.center, one)
     if not moving:

@@ -13,7 +13,7 @@ T = TypeVar("T")
 
 
 class Once(Generic[T]):
-    """A function of a Model whose value is kept as long as that Model is there."""
+    """A function of a Model whose value is cached as long as that Model exists."""
 
     def __init__(self, make: Callable[[Model], T]):
         functools.update_wrapper(self, make)

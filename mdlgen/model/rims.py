@@ -21,7 +21,7 @@ _SAME = 1e-9  # rad
 
 
 class Piece(NamedTuple):
-    """From an angle of the rim on, up to the next piece: what a flat face touches there."""
+    """Piece of a rim that a flat face touches, from an angle up to that of the next piece."""
 
     begin: float  # [rad], from 0 to 2 pi
     sector: int

@@ -31,7 +31,7 @@ def begun_rates(model: Model) -> Iterator[Rate]:
 
 
 def fastest_start(model: Model) -> float:
-    """How fast the surface of a roller that spins, an arm's end or what a spring presses begins at most
+    """Greatest initial speed of the surface of a spinning roller, of an arm's end or of a pressed part
     [mm/ms]."""
     rollers = {roller.body: roller for roller in model.rollers}
     found = [0.0]

@@ -28,7 +28,7 @@ def refuse_static_yield(model: Model, who: str) -> None:
 
 
 def _path(model: Model) -> tuple[str | int, ...]:
-    """Where the scene has the key."""
+    """Path of the key in the scene."""
     name = _first(model)
     found = (row.path for row in model.parameters if row.data_set == name and row.path)
     return next(((*path[:2], "yield") for path in found if path[0] == "materials"), ())

@@ -310,7 +310,7 @@ def link(types: Types) -> tuple[Any, dict[str, tuple[Variant, ...]]]:
             whole.link_in(module)
             made.append(Variant(symbol, tuple(arguments), _result(overload.signature.return_type)))
         entries[name] = tuple(made)
-    # what several entries call has one name, and stands there once
+    # a function that several entries call has one name, and occurs once
     open_to_all = {variant.symbol for variants in entries.values() for variant in variants}
     for thing in (*whole.functions, *whole.global_variables):
         if not thing.is_declaration and thing.name not in open_to_all:
@@ -389,7 +389,7 @@ def shrink(whole: Any, target: Any) -> list[str]:
     manager.run(whole, builder)
     named = {f.name for f in whole.functions if f.is_declaration}
     inner = {name.split(".")[1] for name in named if name.startswith("llvm.")}
-    # what LLVM knows itself it writes as a call of the system's on most machines
+    # LLVM compiles its own intrinsics to calls of the system on most machines
     return sorted({name for name in named if not name.startswith("llvm.")} | (inner & set(SYSTEM)))
 
 

@@ -27,7 +27,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-# Samples and what is set in them, so that none takes long. In the first, the last bit of a force stays the
+# Samples and their settings, so that none takes long. In the first, the last bit of a force stays the
 # last bit of a place; contacts of the others rattle, and one that closes later changes all that follows.
 # The block of verify/slide does not rattle, but nothing turns it back: at its own tolerance, one iteration a
 # step leaves 1e-9 of its course open.
@@ -128,7 +128,7 @@ class Row:
 
 
 class Other(Exception):
-    """A process does not run what it is asked to."""
+    """A process does not run its job."""
 
 
 # Kinds of code, by how the record of a run (Program.code) begins, and the variables that ask for them.
@@ -176,7 +176,7 @@ def compared(
         for process in both:
             stack.callback(process.close)
         for name, sets in samples.items():
-            for process in both:  # loads, or compiles, what the sample needs
+            for process in both:  # loads, or compiles, the code for the sample
                 process.run(solver, name, sets)
             runs = [[process.run(solver, name, sets) for process in both] for _ in range(repeat)]
             yield _row(solver, name, [list(kind) for kind in zip(*runs, strict=True)])
@@ -196,7 +196,7 @@ def _row(solver: str, name: str, runs: list[list[Run]]) -> Row:
 
 
 class Apart(NamedTuple):
-    """How far two runs are apart in something, and may be, as parts of its scale."""
+    """Difference of two runs in a quantity and the allowed one, relative to its scale."""
 
     part: float
     allowed: float
@@ -233,7 +233,7 @@ def _error(estimate: Any) -> float | None:
 
 
 def answer() -> None:
-    """Runs what is asked for on standard input."""
+    """Runs the job that comes on standard input."""
     stream = os.fdopen(os.dup(1), "wb")
     os.dup2(2, 1)  # a solver may talk there
     mdlgen: Any = importlib.import_module("mdlgen")

@@ -1,4 +1,4 @@
-"""A file NAME.program: one line of JSON that says what it is, and LLVM bitcode of its parts, compressed.
+"""A file NAME.program: one line of JSON with its head, and LLVM bitcode of its parts, compressed.
 
 Shared libraries NAME.TARGET.so in the same folder are made from that bitcode. The file has their digests.
 """
@@ -21,7 +21,7 @@ MOST_BYTES = 50_000_000
 
 
 class Unfit(Exception):
-    """Why a program cannot be used here."""
+    """The reason why a program cannot be used here."""
 
 
 @dataclass(frozen=True)
@@ -39,8 +39,8 @@ class Head:
 
     digest: str  # of the kernels that it was made from, and of their statements alone (program.digests)
     statements: str
-    code: str  # SHA-256 of what follows the head
-    versions: dict[str, str]  # of what made it
+    code: str  # SHA-256 of the bytes after the head
+    versions: dict[str, str]  # of the packages that made it
     entries: dict[str, tuple[Variant, ...]]
     external: tuple[str, ...]  # functions of the system that it calls
     parts: tuple[int, ...]  # bytes of bitcode of each part
@@ -66,7 +66,7 @@ class Head:
 
 
 def library(path: Path, target: str) -> Path:
-    """Where the library of a program for a target lies."""
+    """Path of the library of a program for a target."""
     return path.with_name(f"{path.stem}.{target}.so")
 
 

@@ -35,7 +35,7 @@ LOG = logging.getLogger("mdlgen.compiling")
 # they are marked OWNS because they make arrays.
 BORROWS: dict[str, Any] = {"_nrt": False}
 OWNS: dict[str, Any] = {"_nrt": True}
-# A kernel without its own forceinline inherits it from the kernel that calls it first. It also determines
+# A kernel without its own forceinline inherits it from the kernel that calls it first. Inlining also decides
 # where sums are rounded. A kernel marked CALLED is not inlined into kernels that are inlined themselves.
 CALLED: dict[str, Any] = {"forceinline": False}
 # A sum of products may be rounded once, where the processor has an instruction for it.
@@ -90,7 +90,7 @@ class Kernel:
         return self.compiled(*args)
 
     def compiled(self, *args: Any) -> Any:
-        """Calls what numba compiles; what is compiled in the first call is logged."""
+        """Calls the code of numba; compilations in the first call are logged."""
         dispatcher = self.dispatcher
         with _logged():
             found = dispatcher(*args)
@@ -246,7 +246,7 @@ class _Unfailing:
 
 
 def _folder(kernel: Kernel, whole: bool) -> Path | None:
-    """Where numba keeps a kernel: a folder for exactly what it is compiled from.
+    """Cache folder of numba for a kernel: one for exactly its sources.
 
     numba notices that a function's own file has changed, but not a file whose functions it calls: a solver
     would go on with an older law without a word.
@@ -347,7 +347,7 @@ def _plain(value: Any) -> Any:
 
 @contextmanager
 def _logged() -> Iterator[None]:
-    """Logs (INFO, how many so far) each function that numba compiles inside; what is loaded is not logged."""
+    """Logs (INFO, how many so far) each function that numba compiles inside; loaded code is not logged."""
     event = importlib.import_module("numba.core.event")
 
     class Counter(event.Listener):

@@ -52,7 +52,7 @@ def _dtype(message: Any) -> np.dtype:
 
 
 def words(kind: Type) -> int:
-    """How many words a type takes."""
+    """Number of words that a type takes."""
     if isinstance(kind, str):
         return 1
     if kind[0] == "tuple":
@@ -151,7 +151,7 @@ def _array(kind: Type, at: int) -> Write:
 
 
 def reader(kind: Type) -> tuple[int, Callable[[Any], Any]]:
-    """How many bytes a result of a type takes, and what reads it from a buffer."""
+    """Size of a result of a type [bytes], and a function that reads it from a buffer."""
     if kind == "none":
         return 8, lambda buffer: None
     codes = {"f8": "d", "i8": "q", "b1": "?"}

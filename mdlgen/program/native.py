@@ -1,4 +1,4 @@
-"""A program as machine code: shipped, or made by LLVM once for a processor; kept, loaded, called."""
+"""A program as machine code: shipped, or made by LLVM once for a processor; cached, loaded, called."""
 
 from __future__ import annotations
 
@@ -155,7 +155,7 @@ def _elsewhere(target: Target, part: bytes) -> Iterator[Callable[[], bytes | Non
 
 
 def _address(symbol: str) -> int:
-    """Where a function of the system stands. Raises Unfit."""
+    """Address of a function of the system. Raises Unfit."""
     names = ("ucrtbase", "msvcrt", "vcruntime140") if sys.platform == "win32" else (None, "libm.so.6")
     for name in names:
         try:
@@ -169,7 +169,7 @@ def _address(symbol: str) -> int:
 
 
 def _kept(path: Path | None) -> bytes | None:
-    """Machine code that was kept; None where there is none, or where it is not whole."""
+    """Cached machine code; None where there is none, or where it is incomplete."""
     if path is None:
         return None
     try:
@@ -189,7 +189,7 @@ def _keep(path: Path | None, code: bytes) -> None:
 
 
 class Machine:
-    """Machine code in this process: `kind` says what it was made for, `digest` is SHA-256 of it."""
+    """Machine code in this process: `kind` names its target, `digest` is SHA-256 of it."""
 
     def __init__(self, address: Callable[[str], int], kind: str, digest: str):
         self._address, self.kind, self.digest = address, kind, digest

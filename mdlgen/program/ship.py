@@ -100,7 +100,7 @@ class Program:
         return worked
 
     def release(self) -> None:
-        """Forgets the arguments of the last calls, which are kept for the next ones."""
+        """Forgets the arguments of the last calls, which are cached for the next ones."""
         for entry in self._made:
             entry.release()
 

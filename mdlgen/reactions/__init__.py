@@ -1,1 +1,1 @@
-"""Machines that react, without a solver: what sensors see, which rules that fires, and what is to be done."""
+"""Machines that react, without a solver: readings of sensors, rules that fire, and their orders."""

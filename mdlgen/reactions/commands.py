@@ -87,7 +87,7 @@ class Commands:
         return {"ordered": ordered, "preload": {str(body): force for body, force in self._preload.items()}}
 
     def restore(self, kept: dict[str, Any]) -> None:
-        """Goes back to what `kept` gave."""
+        """Restores the state that `kept` returned."""
         self._ordered = {int(body): dict(fields) for body, fields in kept["ordered"].items()}
         self._preload = {int(body): force for body, force in kept["preload"].items()}
 

@@ -46,7 +46,7 @@ class RunawayError(Exception):
 
 
 class _Edge(NamedTuple):
-    """That a sensor's light changes: which one, when [ms], and the poses of the sheet there."""
+    """A change of a sensor: its number, the time [ms], and the poses of the sheet there."""
 
     eye: int
     sheet: int
@@ -59,7 +59,7 @@ class _Stage:
     """All that changes along a run."""
 
     sights: list[Sight]
-    true: list[bool]  # whether each rule held where it was looked at last
+    true: list[bool]  # true if each rule held at its last evaluation
     fired: list[int]  # how often each acted
     state: str
     pending: list[tuple[float, int]] = field(default_factory=list)  # times [ms] and rules that are due then
@@ -115,8 +115,8 @@ class Machine:
     # -- when to look
 
     def ahead(self, t: float, step: float, poses: Poses) -> float:
-        """Up to which time from t on steps of a length may be taken before it looks again [ms]: at least to a
-        part of one."""
+        """Time from t on up to which steps of a length may be taken before the next `look` [ms]: at least a
+        part of one step."""
         stage, until = self._stage, math.inf
         if self._turned:
             return t + SOON * step
@@ -138,8 +138,8 @@ class Machine:
         return max(until, t + SOON * step)
 
     def _next(self, eye: Eye, sight: Sight, t: float, step: float, poses: Poses) -> float:
-        """When a sensor is looked at next: where it changes within the step, at its end where it is near, or
-        as soon as a sheet can be there."""
+        """Time of the next reading of a sensor: where it changes within the step, at its end where it is
+        near, or as soon as a sheet can be there."""
         if self._changes(eye, sight, poses):
             return t  # by a sheet that has just come in, or left
         off = self._off(eye, poses)
@@ -158,7 +158,7 @@ class Machine:
         return 2.0 * away / (v + root) if root > 0.0 else math.inf
 
     def _first(self, changed: Callable[[float], bool], step: float) -> float:
-        """How far ahead [ms] something changes; the step, where it does not change in that."""
+        """Time until a change [ms]; the step, where there is no change in it."""
         if not changed(step):
             return step
         low, high = 0.0, step
@@ -203,7 +203,7 @@ class Machine:
                 return first + self._first(changed, step)
         return t + AHEAD * step
 
-    # -- what happens
+    # -- events
 
     def look(self, t: float, step: float, poses: Poses) -> list[Order]:
         """The orders due at the time t [ms], for a solver with steps of that length.
@@ -368,7 +368,7 @@ class Machine:
         }
 
     def restore(self, kept: dict[str, Any]) -> None:
-        """Goes back to what `kept` gave."""
+        """Restores the state that `kept` returned."""
         stage, before = self._stage, kept["before"]
         stage.sights = [Sight(**sight) for sight in kept["sights"]]
         for name in _PLAIN:

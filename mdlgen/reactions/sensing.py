@@ -36,7 +36,7 @@ class Poses(NamedTuple):
     w: Floats
 
     def after(self, time: float) -> Poses:
-        """Where they are after a time [ms] (below 0: before it), if velocities stay as they are."""
+        """Poses after a time [ms] (below 0: before it), with constant velocities."""
         return self._replace(x=self.x + time * self.u, r=_turned(self.r, time * self.w))
 
     def of(self, bodies: slice) -> Poses:
@@ -47,7 +47,7 @@ class Poses(NamedTuple):
 
 
 class Passing(NamedTuple):
-    """How a sheet goes by a sensor, where its edge is there."""
+    """Motion of a sheet past a sensor as its edge is there."""
 
     speed: float  # of the sheet along itself, its mean; for a line across that [mm/ms]
     skew: (
@@ -99,7 +99,7 @@ class Eye:
         self._share = {k: model.mass_share(k) for k in self.sheets}
 
     def off(self, sheet: int, poses: Poses) -> Floats:
-        """How far each box of a sheet is from where the sensor sees it, below 0 where it is there [mm],
+        """Distance of each box of a sheet from the view of the sensor, below 0 where it is in it [mm],
         (boxes,); `poses` of that sheet's boxes."""
         seen = self._seen(poses)
         middle, half = self._middle[sheet], self._half[sheet]
@@ -116,12 +116,12 @@ class Eye:
         return np.where(seen.flat, apart, FAR)
 
     def passing(self, sheet: int, poses: Poses) -> Passing:
-        """How a sheet goes by where its edge is at the sensor."""
+        """Motion of a sheet as its edge is at the sensor."""
         box = int(self.off(sheet, poses).argmin())
         turn = poses.r[box].reshape(3, 3)
         normal, way = turn[:, 2], self._way / self._reach
         sees = 0.5 * (self._ends[0] + self._ends[1])
-        # the sheet goes as a whole in its plane, however it is bent and its boxes tremble
+        # the sheet moves as a whole in its plane, even if it is bent and its boxes tremble
         axes = poses.r.reshape(-1, 3, 3)[:, :, :2]
         along = self._share[sheet] @ (poses.u[:, None, :] @ axes)[:, 0]
         rate = turn[:, :2] @ along
@@ -157,8 +157,8 @@ class Eye:
 
 
 class _Seen(NamedTuple):
-    """Where both ends of a sensor's line fall on the planes of boxes, in their axes [mm], (boxes, 2); the
-    part of the way up to there, (2, boxes); and whether a box is seen from its face, not from its side."""
+    """Projections of both ends of a sensor's line on the planes of boxes, in their axes [mm], (boxes, 2).
+    Also the part of the way up to there, (2, boxes), and a flag, true if a box is seen from its face."""
 
     first: Floats
     second: Floats

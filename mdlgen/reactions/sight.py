@@ -20,7 +20,7 @@ class Sight:
     speed: float = math.nan
     skew: float = math.nan
     position: float = math.nan
-    looks: float = 0.0  # when it is looked at next
+    looks: float = 0.0  # time of its next evaluation
 
     def known(self, word: str, t: float) -> Amount | float:
         """What it knows at the time t by a word of conditions.OF_SENSOR."""

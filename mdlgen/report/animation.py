@@ -85,8 +85,8 @@ def at_the_start(model: Model, colours: list[dict[str, Any]]) -> dict[str, Any]:
 
 
 def _stays(model: Model, stays: Floats | None) -> dict[str, Any]:
-    """When the boxes of each sheet are drawn: the first box, how many, and from when to when [ms], null:
-    never, and to the end; nothing where all are there throughout."""
+    """Times at which the boxes of each sheet are drawn: the first box, their number, begin and end [ms],
+    null: never, and to the end; nothing where all are there throughout."""
     if stays is None:
         return {}
     rows = [
@@ -128,7 +128,7 @@ def colour(name: str, unit: str, values: Floats, ends: tuple[float, float] | Non
 
 
 def span(values: Floats, unit: str) -> tuple[float, float, str]:
-    """From where to where colours go, and what is beyond that, in words.
+    """Range of the colours, and the values beyond it, in words.
 
     To the greatest value, or to that which OUTLIERS of those above zero exceed, where these are FAR above it;
     from 0, or from the least where all are near the greatest.

@@ -15,7 +15,7 @@ from mdlgen.units import PER_SECOND
 
 LENGTH, LEAST = 0.1, 0.35  # of the greatest arrow, relative to the scene's diagonal; of the least, in its own
 BREADTH = 0.16  # of a head, relative to the greatest length
-AWAY = np.array([-0.55, -0.75, 0.5])  # where a scene is first looked at from
+AWAY = np.array([-0.55, -0.75, 0.5])  # direction of the first view of a scene
 
 
 @dataclass(frozen=True)
@@ -61,7 +61,7 @@ def arrows(model: Model) -> list[Arrow]:
         greatest = max((size for *_, size in raw), default=0.0)
         for part, name, at, way, says, size in raw:
             length = most * max(size / greatest, LEAST) if greatest > 0.0 else most
-            begin = at - way * length if name == "press" else at  # a press ends at what it pushes
+            begin = at - way * length if name == "press" else at  # a press arrow ends at its part
             found.append(Arrow(part, name, begin, way * length, says))
     return found
 

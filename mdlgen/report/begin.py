@@ -30,18 +30,18 @@ ROUND_OFF = 1e-9  # of places [mm]
 class Met:
     """One row of contacts as a run begins."""
 
-    name: str  # what a user calls the contact
+    name: str  # name of the contact for the user
     one: str
     other: str
     deep: float | None  # [mm], below zero by how far two rounds are apart; None: not computed
     stiffness: float  # [N/mm^1.5]
     friction: tuple[float, float]  # static and dynamic
     restitution: float
-    pairs: int | None  # of bodies, that are kept; None: searched for as the run goes
+    pairs: int | None  # number of stored pairs of bodies; None: searched for during the run
 
     @property
     def says(self) -> str:
-        """How deep, in words."""
+        """The depth in words."""
         if self.deep is None:
             return "depth not computed"
         if 0.0 < abs(self.deep) < ROUND_OFF:
@@ -84,7 +84,7 @@ def met(model: Model) -> list[Met]:
 
 
 def _deep(model: Model, row: int, kind: int) -> float | None:
-    """How deep the two parts of a contact are in each other [mm]."""
+    """Depth of the two parts of a contact in each other [mm]."""
     sheets = {sheet.name: sheet for sheet in model.sheets}
     one, name = model.contacts.part_a[row], model.contacts.part_b[row]
     if kind == BOX_BOX:
@@ -106,7 +106,7 @@ def _deep(model: Model, row: int, kind: int) -> float | None:
 
 
 def depths(model: Model) -> Floats:
-    """How deep each box of the sheets is in a roller as the run begins [mm], (boxes,)."""
+    """Depth of each box of the sheets in a roller as the run begins [mm], (boxes,)."""
     found = np.zeros(sum(sheet.count for sheet in model.sheets))
     parts = {roller.name: roller for roller in model.rollers}
     for row in np.flatnonzero(model.contacts.kind == BOX_CYLINDER).tolist():

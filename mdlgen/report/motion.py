@@ -1,4 +1,4 @@
-"""Where bodies are at stored states, as pictures and exports show them."""
+"""Poses of bodies at stored states, as pictures and exports show them."""
 
 from __future__ import annotations
 

@@ -14,5 +14,5 @@ def words(profile: Floats) -> str:
 
 
 def after_comma(profile: Floats) -> str:
-    """The same after what it multiplies."""
+    """The same, to follow the multiplied value."""
     return f", {words(profile)}" if len(profile) else ""

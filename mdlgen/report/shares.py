@@ -23,7 +23,7 @@ if TYPE_CHECKING:
 
 EXPONENT = 1.5  # of the contact law
 PIECES = 4  # of the least side of a box, in the size of a mesh's pieces
-PARTS = 6  # of what two boxes share, each way
+PARTS = 6  # pieces of the area that two boxes share, each way
 ON_EDGE = 0.3  # cosine below which a box stands on another with its side
 MOST_PIECES = 200_000  # of a mesh; beyond it they are larger
 

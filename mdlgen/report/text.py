@@ -20,7 +20,7 @@ FEW = 3  # names that are listed in a line
 MOST_EVENTS = 5  # that a reader should know of, in words
 _ALWAYS = ("rollers", "planes")  # that are counted where there are none, too
 
-Rows = list[list[str]]  # of a table, the first with what its columns are
+Rows = list[list[str]]  # of a table, the first with the names of its columns
 
 
 def overview_text(record: dict[str, Any]) -> str:
@@ -81,7 +81,7 @@ def overview_parts(record: dict[str, Any]) -> list[str | Rows]:
 
 
 def _counts(record: dict[str, Any]) -> list[str]:
-    """How many parts of each kind there are; of most kinds where there are some."""
+    """Number of parts of each kind; most kinds are listed only where there are some."""
     found = []
     for kind in KINDS:
         parts = record[kind.table]
@@ -207,9 +207,9 @@ def summary_text(record: dict[str, Any]) -> str:
     pairs = record["pairs"]
     steps = f"{record['steps']} steps of {record['step_ms']:.4g} ms" if record["step_ms"] else "static"
     estimating = record["estimate_s"]
-    # what takes less than a millisecond is no run, but the clock between two readings
+    # less than a millisecond is not a run, but the clock between two readings
     more = f"and {estimating:.2g} s more for the estimate of the error, " if estimating > 1e-3 else ""
-    # what may be wrong stands first
+    # warnings stand first
     lines = [record["mark"]] if record.get("mark") else []
     lines += [record["chaotic"]["in_words"]] if record.get("chaotic") else []
     status = record["status"] if record["status"] in (OK, INACCURATE) else "ended early"

@@ -42,7 +42,7 @@ def _from_then_on(
 
 
 def _orders(result: Result, roller: RollerPart) -> list[tuple[float, float, float]]:
-    """When rules sent the drive to a speed [ms], to which [rad/ms], and in what time [ms]."""
+    """Orders of rules to the drive: time [ms], target speed [rad/ms], and ramp time [ms]."""
     rules = result.model.reactions.rules
     return [
         (float(row["time_ms"]), order.value, order.ramp)

@@ -43,7 +43,7 @@ def falls(runs: list[Result], name: str) -> bool:
 
 
 def chaos(result: Result, coarser: Result, other: Result) -> Chaos | None:
-    """How far `other`, of the scene as `moved` has it, parts from the result at the same step.
+    """Divergence of `other`, a run of the scene from `moved`, from the result at the same step.
 
     None where that is less than the coarser run differs by, and so little that a start which is KNOWN_START
     off, in proportion, changes the motion by less than the tolerance: it is not chaotic.

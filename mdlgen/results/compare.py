@@ -16,7 +16,7 @@ SAME_TIME = 1e-9
 
 @dataclass(frozen=True)
 class Comparison:
-    """How far `other` is from `result`, over the boxes and the stored times that both cover."""
+    """Distance of `other` from `result`, over the boxes and the stored times that both cover."""
 
     position_rms_mm: float  # root mean square over boxes, by their mass, and times of the distance
     position_axes_mm: tuple[float, float, float]  # the same along x, y and z
@@ -27,7 +27,7 @@ class Comparison:
 
 
 def travel(result: Result, sheet: int = 0, at: int = -1) -> Floats:
-    """From where the sheet's centre of mass is at the start to where it is at a stored time [mm], (3,)."""
+    """Displacement of the sheet's centre of mass from the start to a stored time [mm], (3,)."""
     part = result.model.sheets[sheet]
     boxes = slice(part.first, part.first + part.count)
     return result.model.mass_share(sheet) @ (result.position[at, boxes] - result.model.bodies.position[boxes])

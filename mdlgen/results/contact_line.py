@@ -1,4 +1,4 @@
-"""Where a sheet lies on a roller, and how fast both are there."""
+"""Contact line of a sheet on a roller, and the velocities of both there."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from mdlgen.model.tables import BOX_CYLINDER, Floats, Ints, RollerPart
 if TYPE_CHECKING:
     from mdlgen.results.result import Result
 
-MOST = 20_000  # boxes, times states, that are looked at together
+MOST = 20_000  # boxes, times states, that are evaluated together
 # Across the axis a box counts this part of a radius beyond its face: at a joint that bends away from the
 # roller the axis passes over neither box.
 BESIDE = 0.1

@@ -87,8 +87,8 @@ def creeps(result: Result) -> list[Creep]:
 def _at_row(
     result: Result, sheet: int, at: tuple[int, str], speeds: list[Floats], moved: np.ndarray, allowed: float
 ) -> Iterator[Creep]:
-    """Where friction holds a sheet in one contact, a row and the other part, and it creeps further than is
-    allowed [mm]."""
+    """Intervals in which friction holds a sheet in one contact, a row and the other part, and it creeps
+    further than is allowed [mm]."""
     row, other = at
     contacts, time = result.model.contacts, result.time
     if contacts.kind[row] == EXTERNAL or contacts.sticking[row] > 0.0 or contacts.mu_static[row] <= 0.0:
@@ -176,8 +176,8 @@ def _carrier(model: Model, name: str) -> RollerPart | None:
 
 
 def _surface(result: Result, name: str, speeds: list[Floats]) -> Floats:
-    """How fast the surface of a part is [mm/ms], (t,): of a sheet in its own plane, of a roller and what is
-    on it at its rim, of other parts that move at their centre; planes, guides and meshes else stand."""
+    """Surface speed of a part [mm/ms], (t,): of a sheet in its own plane, of a roller and meshes on it at its
+    rim, of other moving parts at their centre; fixed planes, guides and meshes have 0."""
     model = result.model
     for k, sheet in enumerate(model.sheets):
         if sheet.name == name:

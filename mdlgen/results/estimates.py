@@ -68,7 +68,7 @@ class Estimate:
     scale: float
     unit: str
     judged: float | None = None  # scale by which run.tolerance judges it; None: it does not
-    # whether the two runs agree to less than the value, which is then the least that is estimated of such a
+    # true if the two runs agree to less than the value, which is then the least that is estimated of such a
     # quantity: the error is below it, and how far is not known
     below: bool = False
 
@@ -148,7 +148,7 @@ def _pooled(estimates: dict[str, Estimate]) -> dict[str, Estimate]:
 
 
 def _raised(estimates: dict[str, Estimate], least: Callable[[str], float]) -> dict[str, Estimate]:
-    """None is below what is the least of it by its name."""
+    """None is below the least value for its name."""
     return {name: _at_least(found, least(name)) for name, found in estimates.items()}
 
 

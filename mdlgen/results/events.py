@@ -72,7 +72,7 @@ def _place(event: dict[str, Any]) -> str:
 
 
 def _stubs(result: Result) -> list[dict[str, Any]]:
-    """Where the end of a plate stops a sheet that comes to it below, or above, its face."""
+    """Events where the end of a plate stops a sheet that comes to it below, or above, its face."""
     found = []
     for stop in stops(result):
         for first, last in intervals(result.time, stop.held, SHORT):
@@ -89,7 +89,7 @@ def _stubs(result: Result) -> list[dict[str, Any]]:
 
 
 def _creeps(result: Result) -> list[dict[str, Any]]:
-    """Where friction that does not stick holds a sheet."""
+    """Events where friction that does not stick holds a sheet."""
     contacts, found = result.model.contacts, []
     for creep in creeps(result):
         at = {"time_ms": float(result.time[creep.first]), "kind": "creep"}
@@ -210,7 +210,7 @@ def _gaps(result: Result, stays: list[Stay]) -> list[dict[str, Any]]:
 
 
 def _reach(result: Result, sheet: int, at: int, way: Floats) -> tuple[float, float]:
-    """From where to where a sheet reaches along a direction [mm]."""
+    """Range of a sheet along a direction [mm]."""
     boxes = _boxes(result.model, sheet)
     turn = turns(result.rotation[at, boxes])
     half = (np.abs(np.einsum("nij,i->nj", turn, way)) * result.model.bodies.half[boxes]).sum(axis=1)

@@ -1,4 +1,4 @@
-"""Where parts that turn about a pivot, or slide, are over time, and sheets as such a part sees them."""
+"""Positions over time of parts that turn about a pivot, or slide, and sheets as such a part sees them."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ if TYPE_CHECKING:
 
 
 def motion_of(part: MachinePart) -> MovingPart | None:
-    """How a part moves; None: it has no pivot and no slide."""
+    """Motion of a part; None: it has no pivot and no slide."""
     return getattr(part, "moving", None)
 
 

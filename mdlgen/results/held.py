@@ -31,12 +31,12 @@ class Hold(NamedTuple):
     first: int
     duration: float  # [ms]
     part: float  # its mean speed along the surface, as a part of that of the surface
-    by: tuple[str, ...]  # what else it touches, the greatest normal force first
+    by: tuple[str, ...]  # other parts that it touches, the greatest normal force first
     jammed: bool
 
 
 def holds(result: Result, stay: Stay, together: np.ndarray | None) -> list[Hold]:
-    """Where a driven part slips on a sheet that is held, in one stay; `together`: see results.stacked.
+    """Intervals in which a driven part slips on a held sheet, in one stay; `together`: see results.stacked.
 
     None of a sheet that the scene clamps or supports. A sheet under a moving one is held back, and one that
     touches a rim in its first turn may wait for another sector of it: both wait.

@@ -41,7 +41,7 @@ if TYPE_CHECKING:
 
 # Depths to this power are forces (Eq. 10).
 EXPONENT = 1.5
-MOST = 20_000  # boxes, times states, that are looked at together
+MOST = 20_000  # boxes, times states, that are evaluated together
 STANDS = 1e-9  # [mm/ms]: a slower surface has no direction
 # kinds of contacts without an account: depths do not say how their force is shared
 _BY_AREA = [kind for kind in KINDS if kind.by_area]

@@ -39,7 +39,7 @@ def shaft(result: Result, roller: RollerPart) -> Floats:
 
 
 def behind(result: Result, roller: RollerPart) -> Floats | None:
-    """By what angle it is behind its shaft, or what speed control has for that [rad], (t,)."""
+    """Angle by which it lags its shaft, or the equivalent of speed control [rad], (t,)."""
     if result.behind is None:
         return None
     own = [part.name for part in result.model.rollers if part.axle is not None]

@@ -62,7 +62,7 @@ class SheetResult(_Named):
     travel: Floats  # displacement of the centre of mass since the start [mm], (3,)
     speed: Floats  # [mm/s], velocity of the centre of mass at the end, (3,)
     yaw: float  # [deg], at the end
-    time: Floats  # of what follows [ms], (t,)
+    time: Floats  # times of the values below [ms], (t,)
     position: Floats  # of the centre of mass [mm], (t, 3)
     velocity: Floats  # [mm/s], (t, 3)
     turn: Floats  # yaw [deg], (t,)
@@ -95,7 +95,7 @@ class RollerResult(_Named):
     nip_force: float  # [N], sum of the normal forces on it
     torque: float  # [N mm], that its drive gives about its axis, 0 of a free one
     power: float  # [W], that its drive gives
-    time: Floats  # of what follows [ms], (t,)
+    time: Floats  # times of the values below [ms], (t,)
     rate: Floats  # speed about its axis [rad/s], (t,)
     force: Floats  # sum of the normal forces [N], (t,)
     drive_torque: Floats  # that its drive gives about its axis [N mm], (t,)
@@ -119,13 +119,13 @@ class ProbeResult(_Named):
     shown: ClassVar[tuple[str, ...]] = ("displacement", "speed")
     displacement: Floats  # [mm], since the start, (3,)
     speed: Floats  # [mm/s], velocity at the end, (3,)
-    time: Floats  # of what follows [ms], (t,)
+    time: Floats  # times of the values below [ms], (t,)
     position: Floats  # [mm], (t, 3)
     velocity: Floats  # [mm/s], (t, 3)
 
 
 def sheets(result: Result) -> Mapping[str, SheetResult]:
-    """By name; a run that stored no state has none."""
+    """Results of the sheets, by name; a run that stored no state has none."""
     found = {}
     for k, sheet in enumerate(result.model.sheets if len(result.time) else ()):
         place, rate, yaw = result.sheet_motion(k)
@@ -145,7 +145,7 @@ def sheets(result: Result) -> Mapping[str, SheetResult]:
 
 
 def rollers(result: Result) -> Mapping[str, RollerResult]:
-    """By name; a run that stored no state has none."""
+    """Results of the rollers, by name; a run that stored no state has none."""
     found = {}
     for roller in result.model.rollers if len(result.time) else ():
         rate = result.spin[:, roller.body] @ roller.axis * PER_SECOND
@@ -176,7 +176,7 @@ def rollers(result: Result) -> Mapping[str, RollerResult]:
 
 
 def probes(result: Result) -> Mapping[str, ProbeResult]:
-    """By name; a run that stored no state has none."""
+    """Results of the probes, by name; a run that stored no state has none."""
     found = {}
     for k, probe in enumerate(result.model.probes if len(result.time) else ()):
         place, rate = result.anchor_motion(k)

@@ -66,8 +66,8 @@ def series(result: Result, path: str) -> Floats:
         if kind == "rollers" and (found := _turning(result, model.roller(name), what)) is not None:
             return found
     raise ValueError(
-        f"{path} is known at the end alone; over time there are yaw, skew, speed, travel, way and tension of "
-        "sheets, nip_force and slide of parts, contacts.SHEET.drag of planes, guides and meshes, and omega, "
+        f"{path} is known at the end alone; known over time: yaw, skew, speed, travel, way and tension of "
+        "sheets; nip_force and slide of parts, contacts.SHEET.drag of planes, guides and meshes; and omega, "
         "torque, power, contact_torque and traction.OTHER.reserve of rollers"
     )
 

@@ -1,4 +1,4 @@
-"""When sheets are there: those that come in and leave during a run."""
+"""Presence of sheets that come in and leave during a run."""
 
 from __future__ import annotations
 

@@ -39,7 +39,7 @@ from mdlgen.results.strain import apart, sheet_joints
 
 # Stored times that differ by less than this part of the run are the same; they differ by round-off.
 SAME_TIME = 1e-9
-# Parts of a length, radius, thickness or turn below which a motion is not what errors are relative to.
+# Least scale of a motion, as a part of a length, radius, thickness or turn.
 TENTH = 0.1
 # Part of the greatest force or penetration; below it a force or depth is not used as a scale.
 GRAZE = 0.01
@@ -51,7 +51,7 @@ LEAST = 1e-300
 
 @dataclass(frozen=True)
 class Difference:
-    """How far another run is from one in one quantity."""
+    """Difference of two runs in one quantity."""
 
     name: str
     value: float  # relative to the scale
@@ -68,7 +68,7 @@ class Difference:
 
     @property
     def reported(self) -> float:
-        """The difference of what is reported, relative to the scale."""
+        """The difference of the reported number, relative to the scale."""
         return self.value if self.plain is None else self.plain
 
 
@@ -96,7 +96,7 @@ class Pair:
 
 
 def differences(result: Result, other: Result, judged: bool = False) -> dict[str, Difference]:
-    """The differences by name; of those alone that `run.tolerance` judges, which are quickly worked out.
+    """The differences by name; or only those that `run.tolerance` judges, which are quick to compute.
 
     Empty where the two do not end at the same time.
     """

@@ -26,7 +26,7 @@ def left(result: Result) -> Floats | None:
     rows, of = _rows(model, joints)
     most = (model.plastic.moment / model.plastic.hardening)[rows]
     found[:, of] = np.clip(result.plastic[:, rows], -most, most)
-    # towards the normal: about -y of what lies along x, about x of what lies along y
+    # towards the normal: about -y for joints along x, about x for joints along y
     return found * (np.where(joints.axis == 0, -1.0, 1.0) * joints.way / joints.length)
 
 

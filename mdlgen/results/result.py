@@ -74,7 +74,7 @@ class Energy:
 
 @dataclass(frozen=True)
 class Chaos:
-    """How far two runs part that differ in the places of all sheets at the start alone."""
+    """Divergence of two runs that differ only in the places of all sheets at the start."""
 
     quantity: str  # that run.tolerance judges, by its name
     start_mm: float  # by which the starts differ
@@ -141,7 +141,7 @@ class Result:
     checks: bool = False  # true where the run only checks another one at twice its step
     estimates: dict[str, Estimate] = field(default_factory=dict)  # see `results.estimates.complete`
     coarser: tuple[Result, ...] = field(default=(), repr=False)  # runs from which these follow, then none
-    # what sensors saw and rules did, in the order of time, as events have it
+    # readings of sensors and actions of rules, in the order of time, in the form of events
     reactions: tuple[dict[str, Any], ...] = ()
     halved: bool = False  # one side was solved, the other is its mirror image
     versions: dict[str, str] = field(default_factory=dict)
@@ -255,7 +255,7 @@ class Result:
 
     @property
     def probes(self) -> Mapping[str, ProbeResult]:
-        """Where each probe went, by name."""
+        """Motion of each probe, by name."""
         from mdlgen.results.named import probes
 
         return probes(self)
@@ -293,8 +293,8 @@ class Result:
 
     @cached_property
     def tensions(self) -> tuple[Tension | None, ...]:
-        """Tension of each sheet along its way, as `results.tension` has it; worked out when first asked for,
-        and kept."""
+        """Tension of each sheet along its way, see `results.tension`; computed at the first access,
+        and cached."""
         from mdlgen.results.tension import tension_of
 
         return tuple(tension_of(self, k) for k in range(len(self.model.sheets)))
@@ -306,8 +306,8 @@ class Result:
 
     @cached_property
     def losses(self) -> Losses | None:
-        """Power that contacts take by friction and rolling, as `results.losses` has it; worked out when first
-        asked for, and kept."""
+        """Power that contacts take by friction and rolling, see `results.losses`; computed at the
+        first access, and cached."""
         from mdlgen.results.losses import losses
 
         return losses(self)

@@ -1,4 +1,4 @@
-"""Where pressed rollers and plates are along the direction that they are pressed in."""
+"""Positions of pressed rollers and plates along the direction that they are pressed in."""
 
 from __future__ import annotations
 

@@ -19,7 +19,7 @@ from mdlgen.results.result import Result
 
 # States of joints worked on at a time: the arrays of so many stay in the cache.
 _CHUNK = 10_000
-# Numbers of a run that are kept: peaks, differences and curves are all of the same ones.
+# Numbers of a run that are cached: peaks, differences and curves are all of the same ones.
 _KEPT = 4_000_000
 # Peaks in the order that `_measure` gives them in.
 _KINDS = ("stretch", "squeeze", "curvature", "twist")

@@ -1,4 +1,4 @@
-"""Where a sheet stubs: an outer side of it that comes to the end of a plate, below its face, and stops there.
+"""Detects stubs of a sheet: an outer side that comes to the end of a plate, below its face, and stops there.
 
 It is read from the stored states, by the rule of mechanics.edge: a side that stands before an end, between
 both faces of the plate, does so until it is above or below the plate, or has gone over the edge's round.
@@ -29,7 +29,7 @@ class Stop(NamedTuple):
 
     sheet: str
     part: str
-    held: np.ndarray  # whether a side of it is stopped there, (t,)
+    held: np.ndarray  # true if a side of it is stopped there, (t,)
     below: Floats  # how far the deeper corner of what is stopped is below the face that is touched [mm], (t,)
     force: Floats  # of the sheet on the plate [N], (t,)
 

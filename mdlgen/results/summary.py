@@ -110,7 +110,7 @@ def summary(result: Result, without: Collection[str] = ()) -> dict[str, Any]:
 
 
 def _chaotic(result: Result) -> dict[str, Any]:
-    """How far two runs part whose starts nearly agree, and what half the step changes."""
+    """Divergence of two runs whose starts nearly agree, and the change by half the step."""
     found = result.chaotic
     assert found is not None, "asked only where it is"
     length = found.unit == "mm"
@@ -204,7 +204,7 @@ def _accounts(result: Result) -> dict[str, float | None]:
     for roller in result.model.rollers:
         if (energy := driven(result, roller)) is not None:
             given += float(energy[-1])
-            if not roller.turns:  # the solvers do not count what it takes to turn them
+            if not roller.turns:  # the solvers do not count the work of turning them
                 inertia = roller.loaded_inertia
                 rates = result.spin[[0, -1], roller.body] @ roller.axis
                 own += 0.5 * inertia * float(rates[1] ** 2 - rates[0] ** 2)
@@ -214,7 +214,7 @@ def _accounts(result: Result) -> dict[str, float | None]:
 
 
 def _energy__sheet(result: Result, index: int) -> dict[str, float | None]:
-    """By how much its kinetic energy grew, and what its contacts took by friction and rolling."""
+    """Increase of its kinetic energy, and energy that its contacts took by friction and rolling."""
     sheet, found = result.model.sheets[index], result.losses
     if found is None:
         return dict.fromkeys(("kinetic_n_mm", "friction_n_mm"))

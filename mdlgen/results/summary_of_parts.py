@@ -84,7 +84,7 @@ def _drag(result: Result, row: int, drag: Floats) -> dict[str, float | None]:
 
 
 def _pressing(result: Result, part: RollerPart | PlanePart) -> dict[str, Any]:
-    """How a roller or a plane presses on what it touches."""
+    """Press force of a roller or a plane on its counterpart."""
     sheets = {s.name for s in result.model.sheets}
     on_sheets = [k for k, other in part_rows(result, part).items() if other in sheets]
     return {
@@ -95,7 +95,7 @@ def _pressing(result: Result, part: RollerPart | PlanePart) -> dict[str, Any]:
 
 
 def _centre(result: Result, part: RollerPart | PlanePart) -> dict[str, Any]:
-    """Where it is at the end, and of one that is pressed the way along its press direction, with its
+    """Position at the end. For a pressed part also the displacement along its press direction, with its
     extremes over the stored times."""
     record: dict[str, Any] = {"center_mm": result.position[-1, part.body] if len(result.time) else None}
     if isinstance(part, RollerPart) and (turned := swing(result, part)) is not None and len(turned):
@@ -108,7 +108,7 @@ def _centre(result: Result, part: RollerPart | PlanePart) -> dict[str, Any]:
 
 
 def _plane(result: Result, plane: PlanePart) -> dict[str, Any]:
-    """Where it is at the end, of one that moves, and how it presses."""
+    """Position at the end of a moving part, and its press force."""
     return {**({} if plane.press is None else _centre(result, plane)), **_pressing(result, plane)}
 
 

@@ -1,4 +1,4 @@
-"""How far arms have swung."""
+"""Angles by which arms have swung."""
 
 from __future__ import annotations
 

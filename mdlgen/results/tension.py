@@ -111,8 +111,8 @@ def _along(result: Result, index: int, axis: int) -> Tension | None:
 
 
 def _chords(result: Result, part: slice, before: Floats | None, way: Floats) -> Floats:
-    """By what strain joints are longer at stored states than halfway through a step, where lattice has its
-    forces, (t, n): what turns with w is a chord there, shorter by the part (w h)^2 / 8.
+    """Strain by which joints are longer at stored states than halfway through a step, where lattice has its
+    forces, (t, n). A joint that rotates with w is a secant there, shorter by the part (w h)^2 / 8.
 
     `way` are directions at these states, `before` those at the one before them; w is what they turn by from
     one to the next. Spins of the states themselves are those of a flutter from step to step, too.
@@ -201,7 +201,7 @@ def curve_stress(curves: Curves, number: int, strain: Floats) -> Floats:
 
 
 class _Moves:
-    """How fast joints open along themselves, as `mechanics.bushing` has it."""
+    """Rate at which joints open along themselves, see `mechanics.bushing`."""
 
     def __init__(self, model: Model, sheet: SheetPart, joints: SheetJoints, mine: Ints, axis: int):
         self._boxes, self._way = slice(sheet.first, sheet.first + sheet.count), joints.way[mine]

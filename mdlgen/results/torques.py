@@ -23,9 +23,9 @@ from mdlgen.results.result import GRIPS, RUBS
 if TYPE_CHECKING:
     from mdlgen.results.result import Result
 
-# A contact grips, and has a reserve, where what friction can be is more than this part of its greatest.
+# A contact grips, and has a reserve, where its friction limit is above this part of the greatest one.
 GRAZE = 0.05
-SAME_TIME = 1e-9  # of the run: what a time is known to
+SAME_TIME = 1e-9  # relative to the run: precision of a time
 
 
 @dataclass(frozen=True)

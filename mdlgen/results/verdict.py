@@ -53,7 +53,7 @@ class Outcome:
     unit: str
     margin: float | None
     of: str | None = None  # the sheet that is worst, of a measure that every sheet has
-    doubtful: bool = False  # whether the error of the run could turn it round
+    doubtful: bool = False  # true if the error of the run could reverse it
 
     def __str__(self) -> str:
         verdict = "pass" if self.passed else "FAIL"
@@ -197,8 +197,8 @@ def judged(result: Result, record: Mapping[str, Any], k: int) -> Outcome:
 def doubts(
     result: Result, record: Mapping[str, Any], others: Sequence[tuple[Result, Mapping[str, Any]]]
 ) -> dict[str, float]:
-    """By how much each value may be wrong: SAFETY_REST times the difference to the first of the runs at other
-    steps, each with its record; of an event the number of times by which they differ. inf where the error
+    """Error bound of each value: SAFETY_REST times the difference to the first of the runs at other
+    steps, each with its record; for an event the number of times by which they differ. inf where the error
     of a complete run is not known; none where no other run was asked for."""
     if not result.usable or not result.model.require:
         return {}
@@ -370,7 +370,7 @@ def _of_summary(record: Mapping[str, Any], path: str) -> tuple[float | None, str
             node = node["xyz".index(part)]
             continue
         if not isinstance(node, Mapping):
-            raise ValueError(f"{path} continues after a number")
+            raise ValueError(f"{path} continues behind a number")
         key, unit = _key(node, part, path)
         node = node[key]
     if isinstance(node, Mapping):

@@ -1,4 +1,4 @@
-"""How far a sheet has gone along its own way, how fast, and how it stands to it: also round a bend."""
+"""Displacement and speed of a sheet along its own path, and its angle to the path: also round a bend."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from mdlgen.model.tables import Floats
 from mdlgen.results.passing import span
 from mdlgen.results.result import Result
 
-LAST = 0.1  # of the run: what the mean speed and the skew at its end are of
+LAST = 0.1  # part of the run over which the mean speed and the skew at its end are taken
 STANDS = 0.01  # mm/ms: a slower sheet has no direction
 
 

@@ -1,4 +1,4 @@
-"""Numbers as a reader wants them: few figures, and 0 for what is round-off."""
+"""Numbers for readers: few figures, and 0 for round-off."""
 
 from __future__ import annotations
 

@@ -60,7 +60,7 @@ def _ring(poisson: float, inner: float, n: Floats) -> tuple[Floats, Floats]:
     """L and T of a ring with the radii `inner` and 1."""
     kappa = 3.0 - 4.0 * poisson
     n = np.where(np.abs(n - 1.0) < _OFF, 1.0 + _OFF, n)  # where two of the four functions are one
-    # what falls off inwards is 1 at the outside, what falls off outwards 1 at the core
+    # functions that decay inwards are 1 at the outside, those that decay outwards 1 at the core
     grows, fades = inner ** (n - 1.0), inner ** (n + 1.0)
     one, two = np.ones_like(n), inner * inner
     radial = np.stack([-n, kappa - n - 1.0, n, kappa + n - 1.0], axis=1)  # 2 G u_r

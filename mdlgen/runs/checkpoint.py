@@ -43,7 +43,7 @@ class Checkpointer:
         self.lock = Lock()
         self.free = Event()
         self.written = folder is not None and provenance is None
-        self._last: dict[int, float] = {}  # when each pass was written, or what there was when it began
+        self._last: dict[int, float] = {}  # time at which each pass was written, or began
 
     def begin(self, number: int) -> None:
         """A pass of that number begins: the same one in each run of a scene, however many go on at a time."""
@@ -77,7 +77,7 @@ class Checkpointer:
         self._last[number] = time.monotonic()
 
     def load(self, number: int, like: State, names: tuple[str, ...] = ()) -> State | None:
-        """The state of a pass, None where none is kept; or those of its arrays with the given `names`.
+        """The state of a pass, None where none is stored; or those of its arrays with the given `names`.
 
         It has some of the arrays of `like`, with their types and shapes; where the first axis there has no
         length it has any. Raises OutputError for a file that does not fit.
@@ -91,7 +91,7 @@ class Checkpointer:
             raise OutputError(f"{path}: is not a state of this run ({str(error)[:100]})") from None
 
     def drop(self) -> None:
-        """Removes what is kept, of this run or another. Raises OutputError."""
+        """Removes the stored states, of this run or another. Raises OutputError."""
         if self.folder is None or not self.folder.is_dir() or self.folder.is_symlink():
             return
         try:

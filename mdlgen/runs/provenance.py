@@ -99,6 +99,5 @@ def check_same(folder: Path, there: Mapping[str, Any], now: Mapping[str, str]) -
         if there.get(name) != value:
             what = _WORDS.get(name, f"{name} ({str(there.get(name))[:60]}, now {value})")
             raise RefusedError(
-                f"{folder}: cannot continue with bitwise identical results: {what} has changed; "
-                "start the run again"
+                f"{folder}: cannot continue with identical results: {what} has changed; start the run again"
             )

@@ -61,7 +61,7 @@ def _whole(name: str, folder: Path | None) -> Path:
 
 
 def _holders(data: Any) -> Iterator[tuple[tuple[str | int, ...], dict[str, Any]]]:
-    """Where meshes and curves of plain data name a file."""
+    """Places in plain data where meshes and curves name a file."""
     for kind, keys in (("meshes", None), ("materials", ("curve_md", "curve_cd"))):
         table = data.get(kind) if isinstance(data, dict) else None
         for name, part in table.items() if isinstance(table, dict) else ():

@@ -22,7 +22,7 @@ MOST_ERRORS = 100  # that are looked for in contacts: more are not shown
 
 
 def find_pairs(scene: Scene) -> tuple[list[tuple[int, str, str]], list[PydanticCustomError]]:
-    """The pairs, and what is wrong with each contact that has none or may not have them."""
+    """The pairs, and the error of each contact that has none or may not have them."""
     machine = scene.machine
     rank = {n: i for i, n in enumerate([*scene.sheets, *machine, *scene.parts])}
     taken: dict[tuple[str, str], int] = {}

@@ -27,7 +27,7 @@ from mdlgen.errors import Place, SpecError
 from mdlgen.spec.limits import DEFAULT, Limits
 
 MAX_DEPTH = 40
-_KEPT = 20_000  # characters of a text that is kept as parsed: some MB for all of them
+_KEPT = 20_000  # characters of a text whose parsed form is cached: some MB for all of them
 SpecPath = tuple[str | int, ...]
 
 _INT = re.compile(r"[-+]?[0-9]{1,18}")

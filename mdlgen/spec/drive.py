@@ -1,4 +1,4 @@
-"""How a roller is driven: a speed over time, and a clutch that is free in one sense."""
+"""Drive of a roller: a speed over time, and a clutch that is free in one sense."""
 
 from __future__ import annotations
 

@@ -49,7 +49,7 @@ def in_plain_data(given: dict[str, Any]) -> dict[str, Any]:
     without empty tables."""
     data = _plain(given)
     with_whole_names(data)
-    # null leaves out a default, or what a nip has
+    # null removes a default, or a value of a nip
     meant = set(data) if data.get("defaults") else {"nips", "rollers", "contacts"} if data.get("nips") else ()
     return {
         kind: table if kind in meant else _without_nulls(table)

@@ -53,7 +53,7 @@ def _fixed_length(count: int, what: str):
 
 
 def read_direction(value: Any) -> tuple[float, float, float]:
-    """The unit vector of a direction; raises the error that says what is allowed."""
+    """The unit vector of a direction; raises an error that names the allowed forms."""
     if isinstance(value, str):
         match = re.fullmatch(r"([-+]?)([xyz])", value)
         if not match:

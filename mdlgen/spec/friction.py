@@ -128,8 +128,8 @@ class Friction(Strict):
     )
     sticking: Annotated[float, quantity("N/mm", 0.0, open_low=True)] | None = Field(
         default=None,
-        description="stiffness along the faces of what sticks: of one pair of boxes of two sheets, of a "
-        "sheet and a roller, of one box and another part. What friction holds then yields by "
+        description="stiffness of sticking along the faces: of one pair of boxes of two sheets, of a "
+        "sheet and a roller, of one box and another part. A held part then yields by "
         "force/stiffness, does not creep, and slides from the limit mu N on. Where left out friction rises "
         "over the slip speed alone",
     )

@@ -11,7 +11,7 @@ from mdlgen.spec.fields import Length, PositiveLength
 from mdlgen.spec.strict import Strict, fail
 
 MOST_UNLIKE = 1e3  # the largest relative length over the smallest one
-_STATIONS = 4001  # where the density of lines is looked at
+_STATIONS = 4001  # where the density of lines is evaluated
 
 
 class Graded(Strict):

@@ -17,7 +17,7 @@ PARALLEL = 1e-9  # of the cosine of the angle between two axes
 class MachinePart(Strict):
     """A part of the machine. A table of the scene that holds such parts is one of the machine's."""
 
-    kind: ClassVar[str]  # what one is called in a sentence
+    kind: ClassVar[str]  # word for one in a sentence
 
     def unlike_sheets(self, name: str, contact: Contact) -> tuple[str, str] | None:
         """A key that its contact with a sheet must not have, and the message; None: all keys are allowed."""

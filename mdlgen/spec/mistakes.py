@@ -68,7 +68,7 @@ class Mistakes:
         self.found = [item for item in self.found if item[1].path[:2] not in unmade]
         for path, keys in unmade.items():
             self.add(self._not_there(path, keys))
-        # names that dangle are looked at by the scene itself, once each value is good
+        # the scene itself checks undefined names, once each value is valid
         renamed = any(
             e["loc"][-1:] == ("[key]",) or (e["type"] == "extra_forbidden" and len(e["loc"]) == 1)
             for e in errors
@@ -89,7 +89,7 @@ class Mistakes:
         return any(set(difflib.get_close_matches(key, known, n=1)) & meant for key in given)
 
     def _not_there(self, path: SpecPath, missing: list[str]) -> SpecError:
-        """A part that --set would make without what it needs."""
+        """A part that --set would make without its required keys."""
         table, name = str(path[0]), str(path[1])
         there = [key for key in self.document.data[table] if (table, key) not in self.document.made]
         there += made(self.document.data, table) if (table,) in MADE else []
@@ -131,7 +131,7 @@ class Mistakes:
             error.source = self.document.line(error.place)
         first, *others = errors[:MOST]
         if len(errors) > MOST:
-            others.append(SpecError(f"{len(errors) - MOST} more errors; fix these first"))
+            others.append(SpecError(f"{len(errors) - MOST} more errors; correct these first"))
         return first.with_others(others)
 
 

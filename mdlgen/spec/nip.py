@@ -105,7 +105,7 @@ def written(data: dict[str, Any], origins: dict[Path, Path], fill: Fill) -> None
         if not isinstance(nip, dict) or not all(isinstance(nip.get(side), dict) for side in SIDES):
             continue
         own = dict(zip(SIDES, names_of(name, nip), strict=True))
-        # what stands under rollers, too, counts there: --set rollers.entry_upper.mass=..
+        # a value given under rollers counts there: --set rollers.entry_upper.mass=..
         given = {side: rollers.get(roller) for side, roller in own.items()}
         nip = nip | {side: merged(nip[side], g) for side, g in given.items() if isinstance(g, dict)}
         made = _Written(data, name, nip, fill)
@@ -220,7 +220,7 @@ class _Written:
         return found
 
     def _away(self, side: str) -> str | None:
-        """From the middle plane of the sheet to the axis: R + s/2 - d."""
+        """Distance from the middle plane of the sheet to the axis: R + s/2 - d."""
         radius, depth = self._radius(side), self._depth(side)
         if radius is None or depth is None or self.thickness is None:
             return None
@@ -232,7 +232,7 @@ class _Written:
         return f"{diameter}/2" if diameter else _good(given.get("radius"), "mm")
 
     def _depth(self, side: str) -> str | None:
-        """How deep the roller presses into the sheet: F = k d^1.5 (Eq. 10)."""
+        """Depth of the roller in the sheet: F = k d^1.5 (Eq. 10)."""
         way = self.ways[side]
         given = way.get("stiffness") if isinstance(way, dict) else None
         if given is None and isinstance(way, dict):

@@ -1,4 +1,4 @@
-"""Where a sheet leaves the machine: beyond a plane, or at rest in a tray."""
+"""Exit of a sheet from the machine: beyond a plane, or at rest in a tray."""
 
 from __future__ import annotations
 
@@ -29,7 +29,7 @@ class Out:
     at: float = 0.0
 
     def __str__(self) -> str:
-        """As a scene has it."""
+        """The text in the form of a scene."""
         if self.axis is None:
             return REST
         at = self.at.formula if isinstance(self.at, Computed) else exact_quantity(self.at, "mm")

@@ -217,7 +217,7 @@ ParameterValue = Annotated[
 
 
 def formulas_of(owner: Any, path: Path = ()) -> Iterator[tuple[Path, str]]:
-    """Where the values of a scene are formulas, and their texts."""
+    """Paths of the values of a scene that are formulas, and their texts."""
     if isinstance(owner, Computed):
         yield path, owner.formula
     elif isinstance(owner, BaseModel):

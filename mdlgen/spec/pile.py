@@ -76,7 +76,7 @@ def written(data: dict[str, Any], origins: dict[Path, Path], fill: Fill) -> None
         for name, pile in own.items():
             names = names_of(name, pile)
             for member, place in zip(names, _places(keys, pile, len(names)), strict=True):
-                # what stands under sheets, too, counts there: --set sheets.cassette_3.mass=..
+                # a value given under sheets counts there: --set sheets.cassette_3.mass=..
                 made[member] = merged({**keys, **place}, given := sheets.get(member, {}))
                 origins["sheets", member] = ("sheets", sheet)
                 for key in given if isinstance(given, dict) else ():

@@ -197,7 +197,7 @@ _PERCENT_OR_FORMULA = {"type": "string", "description": "a percentage or a formu
 
 
 def of_percent(value: Any) -> Any:
-    """`30 %` as 0.3; what is no percentage as it is."""
+    """`30 %` as 0.3; any other value as it is."""
     if isinstance(value, str) and _PERCENT.match(value):
         return float(value.rstrip("% ")) / 100.0
     return value

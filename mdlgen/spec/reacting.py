@@ -20,7 +20,7 @@ from mdlgen.units import parse_quantity
 if TYPE_CHECKING:
     from mdlgen.spec.scene import Scene
 
-MOST_RULES, MOST_SENSORS = 200, 100  # convention: far above what a machine has
+MOST_RULES, MOST_SENSORS = 200, 100  # convention: far above the needs of a machine
 
 
 def words(scene: Scene) -> dict[str, Dimension | None]:
@@ -96,7 +96,7 @@ def movable(scene: Scene, pattern: str, path: tuple[str | int, ...]) -> list[str
 
 
 def _motion(part: object) -> Pivot | Slide | None:
-    """How a part moves that is prescribed; None: it does not."""
+    """Prescribed motion of a part; None: it has none."""
     for key in ("pivot", "slide"):
         motion = getattr(part, key, None)
         if motion is not None and getattr(motion, motion.inert) is None:

@@ -1,4 +1,4 @@
-"""How long and how finely a scene is run."""
+"""Settings of a run: its duration, and its steps."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""A scene: sheets, machine, contacts and what is asked of them."""
+"""A scene: sheets, machine, contacts and requirements."""
 
 from __future__ import annotations
 
@@ -194,7 +194,7 @@ class Scene(Strict):
 
     @property
     def contacts_made(self) -> int:
-        """How many of the contacts, the last ones, are made by nips and piles."""
+        """Number of contacts that nips and piles make; they are the last ones."""
         return self._contacts_made
 
     @property
@@ -258,8 +258,8 @@ class Scene(Strict):
 
     @property
     def folder(self) -> Path | None:
-        """That from which `to_yaml` names the files of meshes and curves: of the scene's file, or, of a
-        scene made in Python, the nearest one in which or below which they all are; None: it names none."""
+        """Folder from which `to_yaml` names the files of meshes and curves: that of the scene's file, or, for
+        a scene made in Python, the nearest one in which or below which they all are; None: it names none."""
         own = self._folder_of_names()
         return own if own != PYTHON else holding(self._document().data)
 
@@ -335,7 +335,7 @@ class Scene(Strict):
     @field_validator("parameters", mode="wrap")
     @classmethod
     def _evaluated(cls, value: Any, handler: Callable[[Any], Any]) -> Any:
-        """Names of the form that parts have too, and for each what is wrong with its value."""
+        """Names of the form that parts have too, and for each the error of its value."""
         found = handler(value)
         parameters = current()
         if len(found) > MOST_PARAMETERS:

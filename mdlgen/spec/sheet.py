@@ -305,7 +305,7 @@ class Sheet(Strict):
 
     @property
     def lines(self) -> tuple[tuple[float, ...], tuple[float, ...]]:
-        """Where the lines between boxes are, from the sheet's centre [mm], n_x + 1 and n_y + 1 of them."""
+        """Coordinates of the lines between boxes, from the sheet's centre [mm], n_x + 1 and n_y + 1."""
         graded = (None, None) if self.grading is None else (self.grading.x, self.grading.y)
         x, y = (_lines(*side) for side in zip(self.pitch, self.boxes, graded, strict=True))
         return x, y

@@ -119,7 +119,7 @@ def _deep(item: Any, defaults: dict[str, Any], path: Path, source: Path, origins
 def _filled(
     item: Any, defaults: dict[str, Any], names: tuple[str, ...], path: Path, origins: dict[Path, Path]
 ) -> Any:
-    """A part, or a mapping of one, with what it does not say itself."""
+    """A part, or a mapping of one, with the defaults for its missing keys."""
     if not isinstance(item, dict):
         return item
     item = dict(item)
@@ -140,7 +140,7 @@ def _filled(
 
 
 def in_the_text(path: Path, origins: dict[Path, Path]) -> Path:
-    """Where a value of the scene stands in the text."""
+    """Path in the text of a value of the scene."""
     for _ in range(_MOST_STEPS):
         end = next((end for end in range(len(path), 0, -1) if path[:end] in origins), 0)
         if not end:

@@ -66,7 +66,7 @@ def _with_two_sheets(scene: Scene, pairs: Iterable[tuple[int, str, str]]) -> set
 
 
 def surface_speed(roller: Roller) -> float:
-    """How fast the surface of a driven roller moves at most [mm/ms]; without a drive, as the run begins."""
+    """Greatest surface speed of a driven roller [mm/ms]; without a drive, that at the start."""
     drive = roller.drive
     if drive is None:
         return abs(roller.spin) * _reach(roller)
@@ -83,7 +83,7 @@ def _fastest_of(drive: Drive) -> float:
 
 
 def _on_shafts(scene: Scene) -> float:
-    """How fast the surface of a roller on a shaft moves at most [mm/ms]."""
+    """Greatest surface speed of a roller on a shaft [mm/ms]."""
     speeds = [
         abs(ratio) * _fastest_of(shaft.drive) * _reach(scene.rollers[name])
         for shaft in scene.shafts.values()

@@ -57,7 +57,7 @@ def read_solid(name: Any, folder: Any, unit: str, tally: Tally) -> Solid:
 
 
 def solid(raw: bytes, name: str, unit: str, tally: Tally) -> Solid:
-    """The solid in the bytes of a file. Raises the error that says what is wrong with it."""
+    """The solid in the bytes of a file. Raises an error that names the fault."""
 
     def few(count: int, what: str) -> None:
         if message := tally.exceeded("triangles", count, f"{name}: {what}"):

@@ -1,4 +1,4 @@
-"""Where a scene is from, and its text: with the comments of the file, and what was changed since."""
+"""Origin of a scene, and its text: with the comments of the file, and the changes since."""
 
 from __future__ import annotations
 
@@ -69,7 +69,7 @@ def _dumped(yaml: YAML, node: Any) -> str:
 
 
 def _synced(node: Any, data: Any) -> Any:
-    """A node of a text with the values of plain data; what is the same stays as it is written."""
+    """A node of a text with the values of plain data; equal values stay as they are written."""
     if isinstance(node, CommentedMap) and isinstance(data, dict):
         for key in [key for key in node if key not in data]:
             del node[key]

@@ -122,7 +122,7 @@ def written(data: dict[str, Any], origins: dict[Path, Path]) -> None:
             made[sheet] = keys
         for name, stream in own.items():
             for member, place in zip(members[name], _each(keys, stream, len(members[name])), strict=True):
-                # what stands under sheets, too, counts there: --set sheets.infeed_03.mass=..
+                # a value given under sheets counts there: --set sheets.infeed_03.mass=..
                 made[member] = merged({**keys, **place}, given := sheets.get(member, {}))
                 origins["sheets", member] = ("sheets", sheet)
                 for key in place:

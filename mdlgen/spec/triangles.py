@@ -25,13 +25,13 @@ MOST_LINES = 10  # of an OBJ file for each triangle that is allowed
 MOST_IN_LINE = 100_000  # bytes
 MOST_IN_WORD = 64  # letters
 _HEAD, _EACH = 84, 50  # bytes of a binary STL file: header and count, each triangle
-_AT_ONCE = 2000  # triangles in ASCII whose words are looked at together, to save memory
+_AT_ONCE = 2000  # triangles in ASCII whose words are parsed together, to save memory
 _WORDS = {0: b"facet", 1: b"normal", 5: b"outer", 6: b"loop", 7: b"vertex", 11: b"vertex", 15: b"vertex"}
 _WORDS |= {19: b"endloop"}
 _FACET = 20  # words of a triangle in ASCII before its endfacet
 _CORNERS = [8, 9, 10, 12, 13, 14, 16, 17, 18]
 _LINE = re.compile(rb"[^\r\n]*(?:\r\n?|\n|\Z)")
-# of an OBJ file, what says nothing of the surface
+# keywords of an OBJ file without effect on the surface
 _IGNORED = frozenset((b"vn", b"vt", b"vp", b"o", b"g", b"s", b"mtllib", b"usemtl", b"l", b"p"))
 
 

@@ -1,4 +1,4 @@
-"""A sweep: the cases that are asked for, run and kept, and the table of what they came to."""
+"""A sweep: the requested cases, run and stored, and the table of their outcomes."""
 
 from __future__ import annotations
 

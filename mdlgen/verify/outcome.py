@@ -38,7 +38,7 @@ class Verification:
         return [*self.differences, *(self.perturbed.differences if self.perturbed else [])]
 
     def add(self, source: str, compared: Compared, within: str = "") -> None:
-        """One kind of one source; of two texts, or of several systems, the larger difference is kept.
+        """One kind of one source; of two texts, or of several systems, the larger difference counts.
 
         `within` goes before the names of what differs.
         """

@@ -32,7 +32,7 @@ class Motion(NamedTuple):
     spin: Floats
 
     def place(self, point: Floats) -> Floats:
-        """Where the body's point at `point` is."""
+        """Position of the body's point at `point`."""
         return point + self.displacement
 
     def speed(self, point: Floats) -> Floats:

@@ -45,7 +45,7 @@ class Table:
         return {name: row for row, name in enumerate(self.names)}
 
     def only(self, keep: Callable[[str], bool]) -> Table:
-        """The rows whose names are kept."""
+        """The rows with the chosen names."""
         rows = [k for k, name in enumerate(self.names) if keep(name)]
         words = tuple(self.words[k] for k in rows) if self.words else ()
         names = tuple(self.names[k] for k in rows)
@@ -108,7 +108,7 @@ class Compared(NamedTuple):
 
 
 def compare(kind: str, expected: Table, found: Table | None, words: bool = True) -> Compared:
-    """How far `found` is from `expected`."""
+    """Difference of `found` from `expected`."""
     if found is None:
         found = Table((), expected.columns, np.zeros((0, len(expected.columns))), np.zeros((0, 0)))
     differences = _names(kind, expected, found)

@@ -45,7 +45,7 @@ _NOT_IN_DECK = ("points", "vectors", "data", "mesh files")
 # A script for MotionSolve has no surfaces either.
 _NOT_IN_SCRIPT = (*_NOT_IN_DECK, "surfaces")
 _UNSET = CONTACT_NUMBERS.index("normal_trans_vel")
-_MOST_OBJECTS = 2  # of what the own script makes: a file with more is not read further
+_MOST_OBJECTS = 2  # number of objects relative to the own script: a file with more is not read further
 _MACHINE = frozenset(("bodies", "graphics"))
 
 
@@ -130,7 +130,7 @@ def _of_script(script: Script, reads: list[Read]) -> str | None:
 
 
 def _lint(subject: Subject, read: Read, found: Verification) -> None:
-    """A text of our own has nothing to remark, but for what is external by design."""
+    """A text of our own has no remarks, except on entities that are external by design."""
     _ = read.values
     for finding in read.reading.report.findings:
         if not (subject.only and finding.code == "external"):

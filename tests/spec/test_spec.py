@@ -199,7 +199,7 @@ class TestAllAtOnce:
         keys = "".join(f"key_{k}: 1\n" for k in range(30))
         first = refused(CANTILEVER + keys)
         assert [e.path for e in (first, *first.others[:-1])] == [(f"key_{k}",) for k in range(20)]
-        assert str(first.others[-1]) == "10 more errors; fix these first"
+        assert str(first.others[-1]) == "10 more errors; correct these first"
 
     def test_one_mistake_is_reported_once(self) -> None:
         for old, new in (("thickness:", "thicknes:"), ("  note:", "  notes:"), ("boxes: [", "boxes: [1, ")):

@@ -334,7 +334,7 @@ class TestProcesses:
         os.killpg(process.pid, signal.SIGINT)
         _, err = process.communicate(timeout=60)
         assert process.returncode == 130
-        assert f"mdlgen sweep --resume {folder} goes on" in err.decode() and "Traceback" not in err.decode()
+        assert f"mdlgen sweep --resume {folder} continues" in err.decode() and "Traceback" not in err.decode()
         done = len(journal.read(folder)[1])
         assert 3 <= done < 20
         code, out, _ = cli("sweep", "--resume", folder, "--workers", "1")

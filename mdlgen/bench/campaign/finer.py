@@ -22,7 +22,7 @@ class Compared:
 
     name: str
     times: float | None  # None: there is no estimate
-    agree: bool = True  # whether the two finer runs agree on it
+    agree: bool = True  # true if the two finer runs agree on it
 
 
 def against(result: Result, fine: Result, finest: Result | None = None) -> Iterator[Compared]:

@@ -39,7 +39,7 @@ class CampaignRow:
     estimate_of: str | None = None
     cpu_s: float | None = None  # processor time of the run, all passes; the time at which it was stopped
     wall_s: float | None = None
-    stopped: bool = False  # whether it was stopped at the limit of time
+    stopped: bool = False  # true if it was stopped at the limit of time
     rejected: tuple[str, ...] = ()  # why earlier draws of this scene were rejected
     finer: Finer | None = None  # of one in ten
 

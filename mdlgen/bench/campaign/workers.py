@@ -39,7 +39,7 @@ class _Process:
             stderr=self.log,
             env={**os.environ, **dict.fromkeys(THREADS, "1"), "PYTHONPATH": os.pathsep.join(sys.path)},
         )
-        self.late = False  # whether it was ended because it took too long
+        self.late = False  # true if it was ended because it took too long
 
     def send(self, task: Task) -> None:
         """Raises OSError where the process has ended."""

@@ -21,7 +21,7 @@ from mdlgen.rubber.layer import Floats
 _MOST = 60  # changes of the active set: a nip needs about ten
 _NODES = np.array([(-1, -1), (1, -1), (1, 1), (-1, 1)], float)  # of an element
 _ROUND = 3.0  # either way [rad], where the mesh ends at the latest
-FAR = 5.0  # thicknesses beyond the contact, where the mesh ends: what the cover does there is e^-10
+FAR = 5.0  # thicknesses beyond the contact, where the mesh ends: displacements there are e^-10
 
 
 @dataclass(frozen=True)

@@ -6,7 +6,7 @@ import math
 
 import numpy as np
 
-# int_0^1 2/(3 - u^2) du - 1/2: what the last bit below the smoothing speed adds to the way
+# int_0^1 2/(3 - u^2) du - 1/2: addition to the displacement below the smoothing speed
 STOP = 2 / math.sqrt(3) * math.atanh(1 / math.sqrt(3)) - 0.5
 
 

@@ -12,8 +12,8 @@ import math
 import numpy as np
 from numpy.polynomial import Legendre, Polynomial
 
-ALONG, ACROSS = 14, 7  # polynomials: two fewer each way change what follows by less than 2e-3 for L > W
-TERMS = 99  # half waves each way: what follows has less than 1e-6 of the deflection
+ALONG, ACROSS = 14, 7  # polynomials: two fewer each way change the results by less than 2e-3 for L > W
+TERMS = 99  # half waves each way: the rest of the series is below 1e-6 of the deflection
 
 
 def torsion(length: float, width: float, d_along: float, d_across: float, d_twist: float) -> float:

@@ -17,7 +17,7 @@ STEPS = {"mujoco": (0.25, 0.125, 0.05, 0.025), "exudyn-script": (0.1, 0.05)}
 # Sheet of each peer; the case's name.
 SHEETS = {"mujoco": "isotropic flex of 11 x 21 nodes", "exudyn-script": "10 x 20 boxes, by hand"}
 MISSING = (
-    "MuJoCo is not installed: pip install 'mdlgen[peers]' puts it and an Exudyn script next to our solvers"
+    "MuJoCo is not installed: pip install 'mdlgen[peers]' adds it and an Exudyn script to the comparison"
 )
 
 

@@ -24,7 +24,7 @@ DAMPING = np.repeat((1.0, 1e-6), 3)
 STEP = 0.05  # [ms], where none is given
 # Newton's iteration ends at the round-off of k x; Exudyn's own 1e-10 lies below it, and fails.
 ABSOLUTE = 1e-8
-# At Exudyn's own 1e-8 it takes a third longer, and the error against the reference stays what it is.
+# At Exudyn's own 1e-8 it takes a third longer, and the error against the reference does not change.
 RELATIVE = 1e-6
 
 

@@ -38,7 +38,7 @@ DAMPING_RATIO = 0.5  # of a contact
 FRICTION = 10  # times as stiff as the normal direction, against creep
 KEEP_SPEED = 1e6  # gain of the drives [N mm ms]: a roller of 25 g mm^2 is 25 ns behind
 
-APART = 'contype="0" conaffinity="0"'  # touches only what a pair names
+APART = 'contype="0" conaffinity="0"'  # touches only bodies that a pair names
 
 
 def solve(model: Model, progress: Any = None, step: float | None = None) -> Result:

@@ -53,7 +53,7 @@ class Lane:
     """A row of boxes under a roller."""
 
     row: int
-    offset: float  # from the roller's centre along y to the middle of what it covers of the row [mm]
+    offset: float  # from the roller's centre along y to the middle of the part of the row that it covers [mm]
     share: float  # of the roller's width
 
 

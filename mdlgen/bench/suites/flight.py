@@ -1,4 +1,4 @@
-"""A note strikes a post and flies on, bent and spinning: momentum is kept from the last touch on."""
+"""A note strikes a post and flies on, bent and spinning: momentum is conserved from the last touch on."""
 
 from __future__ import annotations
 

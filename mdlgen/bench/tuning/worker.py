@@ -70,7 +70,7 @@ def compared(scene: str, travel: float, before: Found, now: Found | str) -> Outc
     )
 
 
-Work = tuple[Callable[[], Found], float]  # what runs, and its limit of processor time [s]
+Work = tuple[Callable[[], Found], float]  # a function to run, and its limit of processor time [s]
 
 
 def apart(works: Sequence[Work]) -> list[Found | str]:

@@ -1,1 +1,1 @@
-"""Steps from a Scene to the tables of a Model, apart from what is of one kind of part."""
+"""Steps from a Scene to the tables of a Model, apart from those of one kind of part."""

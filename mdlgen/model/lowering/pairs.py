@@ -53,9 +53,9 @@ def find_pairs(
     margin: float,
     limits: Limits = DEFAULT,
 ) -> Pairs:
-    """Possible pairs, those kept, and the bounds of each box (see the module).
+    """Possible pairs, those stored, and the bounds of each box (see the module).
 
-    Raises SpecError where more would be kept than the limits allow.
+    Raises SpecError where more would be stored than the limits allow.
     """
     parts = {p.name: p for p in machine}
     by_name = {s.name: s for s in sheets}
@@ -133,7 +133,7 @@ def find_pairs(
 class _Drives(NamedTuple):
     """Motions that driven rollers may give a sheet."""
 
-    ends: list[Floats]  # how far the way of each goes either way along each axis [mm], (3,)
+    ends: list[Floats]  # distance that each may move it, in both directions of each axis [mm], (3,)
     twist: float  # angle by which their differences may turn it in its plane [rad]
 
 
@@ -198,7 +198,7 @@ def _swept(
         least, most = least + np.minimum(way, 0), most + np.maximum(way, 0)
     least, most = least - lift, most + lift
     if sheet.count > 1:
-        # a flexible sheet may flap out of its plane by what its length allows
+        # a flexible sheet may flap out of its plane as far as its length allows
         normal = np.abs(sheet.rotation[:, 2]) * 0.5 * float(size.max())
         least, most = least - normal, most + normal
     arms = centers - sheet.center

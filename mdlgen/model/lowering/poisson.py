@@ -38,7 +38,7 @@ from mdlgen.spec.material import Material
 from mdlgen.spec.scene import Scene
 from mdlgen.spec.sheet import Sheet
 
-# Columns of a bushing's k and c: what it stretches with, and what it bends with, along x and along y.
+# Columns of a bushing's k and c for stretching and for bending, along x and along y.
 STRETCH, BEND = (0, 1), (4, 3)
 
 

@@ -58,7 +58,7 @@ class Folds:
         half = self._model.bodies.half[boxes]
         reach = 2.0 * float(np.linalg.norm(half, axis=1).max())
         pairs = KDTree(position[boxes]).query_pairs(reach, output_type="ndarray")
-        # what is next to each other along the sheet overlaps as it bends
+        # neighbours along the sheet overlap as it bends
         rows, columns = np.divmod(boxes - sheet.first, sheet.n_x)
         near = np.abs(rows[pairs[:, 0]] - rows[pairs[:, 1]]) * 2.0 * half[:, 1].min() <= _beside(half[:, 1:])
         near &= np.abs(columns[pairs[:, 0]] - columns[pairs[:, 1]]) * 2.0 * half[:, 0].min() <= _beside(

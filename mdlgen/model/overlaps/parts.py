@@ -26,7 +26,7 @@ from mdlgen.model.tables import (
 )
 
 HAIR = 0.05  # mm: less is the depth of the contacts through a sheet between the two
-_STEPS = 33  # places along a slide that are looked at
+_STEPS = 33  # places along a slide that are checked
 
 
 class Pair(NamedTuple):
@@ -48,7 +48,7 @@ def rod(roller: RollerPart, center: Floats) -> Rod:
 
 
 class Overlaps:
-    """The pairs of a Model that are looked at, and what they do at its states."""
+    """The pairs of a Model that are checked, and their overlaps at its states."""
 
     def __init__(self, model: Model) -> None:
         self._model = model
@@ -61,7 +61,7 @@ class Overlaps:
             if pair.start <= HAIR and not self._over_a_hole(pair.roller, pair.part)
         ]
         self._bodies = np.array([[p.roller.body, p.part.body] for p in self._watched], int).reshape(-1, 2)
-        # where a pair stood to each other when it was looked at, and how far apart it was
+        # relative place of a pair when it was checked last, and its distance then
         self._places = np.zeros((len(self._watched), 3))
         self._apart = np.zeros(len(self._watched))
 
@@ -120,7 +120,7 @@ class Overlaps:
     def found(self, position: Floats, time: float) -> str | None:
         """Why a run cannot go on from places of bodies (n, 3) at a time [ms]; None: it can.
 
-        A pair is looked at again once it may have come together since it was.
+        A pair is checked again once it may have come together since then.
         """
         if not self._watched:
             return None

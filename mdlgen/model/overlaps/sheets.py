@@ -1,7 +1,7 @@
 """Sheets and what they have no contact with, other sheets and rigid parts: whether they come to overlap.
 
 Two sheets in one place are always a mistake. A sheet that is inside a rigid part where both are given stands
-in a hole that is not modelled, and that pair is left alone. Meshes are not looked at.
+in a hole that is not modelled, and that pair is left alone. Meshes are not checked.
 """
 
 from __future__ import annotations
@@ -28,7 +28,7 @@ from mdlgen.model.tables import (
 DEEP = 0.5
 # Distances below which one sheet lies on another, relative to the thinner one, and on a part, to the sheet.
 ON_SHEET, ON_PART = 0.5, 0.75
-# Places of a box that are looked at, along and across it, in half lengths.
+# Places of a box that are checked, along and across it, in half lengths.
 _PLACES = np.array([[i, j] for i in (-1.0, 0.0, 1.0) for j in (-1.0, 0.0, 1.0)])
 _AT_ONCE = 256  # boxes of a sheet that are compared with all of another
 
@@ -55,7 +55,7 @@ class SheetOverlaps:
             if frozenset((model.sheets[a].name, model.sheets[b].name)) not in met
         ]
         self._sheets: Ints = np.array(apart, int).reshape(-1, 2)
-        # Two sheets are looked at again once they may have come together: how far apart they were, and how
+        # Two sheets are checked again once they may have come together: how far apart they were, and how
         # far both had come by then.
         self._apart = np.zeros(len(apart))
         self._then = np.zeros(len(apart))
@@ -166,7 +166,7 @@ class SheetOverlaps:
             self._last = position, rotation
 
     def _near(self, extents: list[Extent], there: NDArray[np.bool_] | None) -> list[int]:
-        """Pairs of sheets that are to be looked at; of the others the distance of their bounds is noted."""
+        """Pairs of sheets that must be checked; for the others the distance of their bounds is noted."""
         if not len(self._sheets):
             return []
         ways = self._way[self._sheets].sum(axis=1)

@@ -7,7 +7,7 @@ from mdlgen.units import parse_unit, same, unit_of
 
 NAMED_AXES = ("x", "y", "z")
 OF_USER = "parameters"  # data set of those that the user named
-# Members of a contact -> what they are of its friction.
+# Members of a contact -> keys of its friction.
 FRICTION = {"mu_s": "static", "mu_d": "dynamic", "v_s": "stiction_velocity", "v_d": "friction_velocity"}
 # Internal units as parameters have them.
 _UNITS = (

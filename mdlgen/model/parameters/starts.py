@@ -1,4 +1,4 @@
-"""Where pressed rollers touch and begin, as formulas over the values of a text: so they follow there.
+"""Formulas for the places where pressed rollers touch and begin, over the values of an MDL file.
 
 A roller that one contact holds, straight along its slide, begins d behind the place c where that contact
 touches: its spring gives f + W - k (c + d - touch), W the weight along the slide, and the contact K d^1.5.
@@ -120,13 +120,13 @@ def _along(scene: Scene, name: str, to: Floats | tuple[float, ...]) -> float:
 
 
 def _touch(scene: Scene, name: str, other: str) -> float:
-    """Where it touches another roller [mm]."""
+    """Place where it touches another roller [mm]."""
     partner = scene.rollers[other]
     return _along(scene, name, partner.center) - scene.rollers[name].radius - partner.radius
 
 
 def _meets(scene: Scene, name: str, sheet: str) -> float:
-    """Where it touches a sheet [mm]."""
+    """Place where it touches a sheet [mm]."""
     part = scene.sheets[sheet]
     return _along(scene, name, part.center) - scene.rollers[name].radius - 0.5 * part.thickness
 

@@ -56,15 +56,15 @@ class Kind(Generic[P]):
     """One kind of part. Lengths in mm, bodies and places global where nothing else is said."""
 
     table: ClassVar[str]  # where they stand in a scene: `rollers`
-    part: type[P]  # what the Model has for each
+    part: type[P]  # class of each in the Model
     with_sheet: ClassVar[int]  # kind of its contacts with sheets
     with_roller: ClassVar[int] = NONE  # kind of its contacts with rollers; NONE: it has none
-    leads: ClassVar[bool] = False  # whether it may lead a sheet in any direction
-    curved: ClassVar[bool] = False  # whether its contact with a box takes longer than that of a flat face
+    leads: ClassVar[bool] = False  # true if it may lead a sheet in any direction
+    curved: ClassVar[bool] = False  # true if its contact with a box takes longer than that of a flat face
     by_area: ClassVar[bool] = (
-        False  # whether boxes share its force by the area that each covers, not by depth
+        False  # true if boxes share its force by the area that each covers, not by depth
     )
-    described: ClassVar[bool] = False  # whether `overview` has more of each than that it is there
+    described: ClassVar[bool] = False  # true if `overview` has more of each than that it is there
 
     @property
     def name(self) -> str:
@@ -138,17 +138,17 @@ class Kind(Generic[P]):
         return None
 
     def depth_at_start(self, model: Model, sheet: SheetPart, part: P) -> float:
-        """How deep a sheet is in it as the run begins; 0 where it is off, or where none is computed."""
+        """Depth of a sheet in it as the run begins; 0 where it is off, or where none is computed."""
         return 0.0
 
     def depths(self, part: P, boxes: Boxes, at: Floats) -> Floats | None:
-        """How deep boxes are in it, whose body is `at` (t, 3): (t, n), where they are off not above zero;
+        """Depth of boxes in it, whose body is `at` (t, 3): (t, n), where they are off not above zero;
         None where their share of a force follows from areas."""
         return None
 
     def contact_depth(self, model: Model, row: int, sheet: SheetPart, part: P) -> float | None:
-        """How deep a sheet is in it as the run begins by a row of the contacts, below zero by how far it is
-        off where that is known; None where it is not computed."""
+        """Depth of a sheet in it as the run begins by a row of the contacts, below zero by the distance where
+        that is known; None where it is not computed."""
         return max(0.0, self.depth_at_start(model, sheet, part))
 
     def half_depth(self, part: P) -> float:
@@ -163,7 +163,7 @@ class Kind(Generic[P]):
     # -- what is shown of it
 
     def place(self, part: P) -> str:
-        """Where in the scene it is said that it stands, for lints."""
+        """Path in the scene of the value that places it, for lints."""
         return f"{self.table}.{part.name}.center"
 
     def drawn(self, part: P, half: Floats) -> list[Drawn]:
@@ -175,7 +175,7 @@ class Kind(Generic[P]):
         raise NotImplementedError
 
     def label(self, model: Model, part: P, seen: tuple[Floats, Floats]) -> Floats:
-        """Where its name stands in a picture, (3,); seen: least and greatest coordinates of what moves."""
+        """Place of its name in a picture, (3,); seen: least and greatest coordinates of moving parts."""
         return model.bodies.position[part.body]
 
     def overview(self, part: P) -> dict[str, Any]:

@@ -145,7 +145,7 @@ class _Rollers(Kind[RollerPart]):
         return float(self.of_boxes(model, boxes, part).max()) if len(boxes) else 0.0
 
     def of_boxes(self, model: Model, boxes: Ints, part: RollerPart) -> Floats:
-        """How deep boxes are in it as the run begins, (n,); below zero by how far they are off."""
+        """Depth of boxes in it as the run begins, (n,); below zero by how far they are off."""
         bodies = model.bodies
         shown = Boxes(bodies.position[boxes][None], bodies.rotation[boxes][None], bodies.half[boxes])
         return self.depths(part, shown, bodies.position[part.body][None])[0]
@@ -158,7 +158,7 @@ class _Rollers(Kind[RollerPart]):
         return []
 
     def depths(self, part: RollerPart, boxes: Boxes, at: Floats) -> Floats:
-        """From the point of each box's middle plane that is nearest to the axis, kept on the box."""
+        """Depth by the point of each box's middle plane that is nearest to the axis, limited to the box."""
         offset = np.einsum("tnij,tni->tnj", boxes.turn, at[:, None] - boxes.place)
         along = np.einsum("tnij,i->tnj", boxes.turn, part.axis)
         reach = np.clip(-np.einsum("tnk,tnk->tn", offset, along), -part.width / 2, part.width / 2)
@@ -299,7 +299,7 @@ def swing(roller: RollerPart) -> Floats:
 
 
 def _brought(roller: RollerPart) -> Floats:
-    """How far its arm has brought a roller as the run begins [mm], (3,)."""
+    """Displacement of a roller by its arm as the run begins [mm], (3,)."""
     if roller.arm is None or roller.arm.angle == 0.0:
         return np.zeros(3)
     way = roller.center - roller.arm.pivot

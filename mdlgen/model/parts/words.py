@@ -16,7 +16,7 @@ def direction(way: Floats) -> str:
 
 
 def begins(press: Press) -> list[str]:
-    """Where and how fast what a spring presses begins, as far as it was given."""
+    """Initial place and speed of a pressed part in words, as far as they were given."""
     found = []
     if press.begins is not None:
         found.append(f"begins {press.begins:.4g} mm from where its spring has that force")

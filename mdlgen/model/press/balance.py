@@ -1,4 +1,4 @@
-"""Where a pressed roller touches its counterpart, and where it or a pressed plate stands in equilibrium."""
+"""Places where a pressed roller touches its counterpart, and where it or a pressed plate is in balance."""
 
 from __future__ import annotations
 
@@ -140,7 +140,7 @@ def plate_contact(
             heights.append(corners @ normal)
             shares.append(np.full(len(corners), stiffness / max(1, len(corners))))
     height, share = np.concatenate(heights), np.concatenate(shares)
-    # what is behind the plate does not touch it
+    # parts behind the plate do not touch it
     before = 0.5 * size[2] - height <= size[2]
     height, share = height[before], share[before]
 
@@ -203,7 +203,7 @@ def plate_balance(
     push = _push(center, direction, spring, contacts)
     if push(0.0) == 0.0:  # nothing pushes it: anywhere about is balance
         return 0.0, 0.0
-    # neither spring nor contacts push more the further it goes
+    # the push of spring and contacts never grows along the way
     for end, sign in ((-far, -1.0), (far, 1.0)):
         if sign * push(end) > 0.0:
             return end, push(end)
@@ -226,7 +226,7 @@ def _push(
 
 
 def _root(push: Callable[[float], float], low: float, high: float) -> float:
-    """Where a push that falls from `low` to `high` is none, to the last bit."""
+    """Root of a push that falls from `low` to `high`, to the last bit."""
     for _ in range(200):
         middle = 0.5 * (low + high)
         if middle in (low, high):

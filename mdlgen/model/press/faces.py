@@ -34,14 +34,14 @@ class Wheel:
 
 
 def _reached(gap: Floats, way: Floats, radius: float) -> float | None:
-    """How far along `way` a gap that becomes smaller first has a length; None: it never has."""
+    """Distance along `way` at which a shrinking gap first has a given length; None: it never has."""
     a, b = float(way @ way), float(gap @ way)
     square = b * b - a * (float(gap @ gap) - radius * radius)
     return None if b >= 0.0 or square < 0.0 else (-b - math.sqrt(square)) / a
 
 
 def _left(gap: Floats, way: Floats, radius: float) -> float | None:
-    """How far along `way` a gap last has a length; None: it never has."""
+    """Distance along `way` at which a gap last has a given length; None: it never has."""
     a, b = float(way @ way), float(gap @ way)
     square = b * b - a * (float(gap @ gap) - radius * radius)
     return None if a < 1e-12 or square < 0.0 else (-b + math.sqrt(square)) / a
@@ -57,7 +57,7 @@ class Face:
     thickness: float
 
     def _within(self, start: Floats, step: Floats, low: float, high: float) -> tuple[float, float]:
-        """From where to where start + u step is in the face, between low and high."""
+        """Range of u in which start + u step is in the face, between low and high."""
         for at, rate, half in zip(start.tolist(), step.tolist(), self.half, strict=True):
             if abs(rate) < 1e-12:
                 if abs(at) > half:
@@ -113,7 +113,7 @@ class Face:
         return max(0.0, wheel.radius - distance) ** 1.5 * away / distance
 
     def touch(self, wheel: Wheel, direction: Floats) -> float | None:
-        """How far along a direction the roller just touches; None: it does not come to the face."""
+        """Distance along a direction at which the roller just touches; None: it never reaches the face."""
         closing = -float(direction @ self.ways[:, 2])
         gap, own, cosine, low, high = self._over(wheel, wheel.center)
         if closing > 1e-9:

@@ -31,7 +31,7 @@ from mdlgen.spec.scene import Scene
 
 
 def roller_press(scene: Scene, name: str, before: Before) -> Press:
-    """The press of a roller. Raises SpecError where what it is pressed against is pressed, too."""
+    """The press of a roller. Raises SpecError where its counterpart is pressed, too."""
     sheets, contacts = before.sheets, before.contacts
     roller = scene.rollers[name]
     spec = roller.press

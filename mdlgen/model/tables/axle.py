@@ -24,18 +24,18 @@ class AxlePart(Frozen):
     # of a motor: how much slower than the no-load speed it runs, from 0 on [rad/ms], and its torque [N mm],
     # (n, 2)
     curve: Floats
-    inertia: float  # of rotor and shaft [g mm^2]
+    inertia: float  # inertia of rotor and shaft [g mm^2]
     gear: float  # turns of the motor for one turn of the roller
-    proportional: float = 0.0  # [N mm ms/rad]
-    integral: float = 0.0  # [N mm/rad]
+    proportional: float = 0.0  # gain of speed control [N mm ms/rad]
+    integral: float = 0.0  # gain of its integral part [N mm/rad]
     limit: float = 0.0  # greatest torque of speed control, or of a limiter [N mm]
-    creep: float = 1.0  # of a limiter [rad/ms]
+    creep: float = 1.0  # creep of a limiter [rad/ms]
     poles: float = 0.0  # periods of the torque of a stepper per radian of the roller
-    damping: float = 0.0  # of a stepper against its field [N mm ms/rad]
-    friction: float = 0.0  # of the bearing [N mm]
-    drag: float = 0.0  # [N mm ms/rad]
+    damping: float = 0.0  # damping of a stepper against its field [N mm ms/rad]
+    friction: float = 0.0  # friction of the bearing [N mm]
+    drag: float = 0.0  # viscous drag of the bearing [N mm ms/rad]
     ease: float = 1.0  # speed over which the bearing's friction changes its sign [rad/ms]
-    shaft: str = ""  # the shaft that it stands for, "": the roller's own
+    shaft: str = ""  # name of the shaft that it stands for, "": the roller's own
 
     @property
     def motor(self) -> bool:

@@ -31,7 +31,7 @@ class Bodies(Frozen):
     position: Floats  # centre of mass [mm], (n, 3)
     rotation: Floats  # (n, 3, 3)
     mass: Floats  # [g], (n,)
-    inertia: Floats  # principal, body axes [g mm^2], (n, 3)
+    inertia: Floats  # principal inertia, body axes [g mm^2], (n, 3)
     velocity: Floats  # [mm/ms], (n, 3)
     spin: Floats  # angular velocity, global axes [rad/ms], (n, 3)
     fixed: NDArray[np.bool_]  # held: clamped boxes; planes, guides and meshes that move with nothing, (n,)
@@ -61,7 +61,7 @@ class Bushings(Frozen):
     k: Floats  # k_x, k_y, k_z [N/mm], k_tx, k_ty, k_tz [N mm/rad], (n, 6)
     c: Floats  # the same order [N ms/mm], [N mm ms/rad], (n, 6)
     node: Ints  # twice the grid coordinates of the origin from the corner of box (0, 0), (n, 2)
-    frames: Ints  # of the two sides, see Frames, (n, 2)
+    frames: Ints  # frames of the two sides, see Frames, (n, 2)
 
     def __len__(self) -> int:
         return len(self.name)
@@ -72,8 +72,8 @@ class Plastic(Frozen):
     """Bushings that yield in bending, see mechanics.plastic: one row each."""
 
     bushing: Ints  # (n,)
-    axis: Ints  # of its frame that the sheet bends about: 0: x (along CD), 1: y (along MD), (n,)
-    moment: Floats  # up to which it is elastic [N mm], (n,)
+    axis: Ints  # axis of its frame that the sheet bends about: 0: x (along CD), 1: y (along MD), (n,)
+    moment: Floats  # moment up to which it is elastic [N mm], (n,)
     hardening: Floats  # growth of the moment with the plastic rotation [N mm/rad], (n,)
 
     def __len__(self) -> int:
@@ -124,9 +124,9 @@ class Curves(Frozen):
     strain: Floats  # (points,)
     stress: Floats  # [MPa]
     slope: Floats  # [MPa]
-    energy: Floats  # of a unit volume, up to the point [N/mm^2]
+    energy: Floats  # energy of a unit volume, up to the point [N/mm^2]
     rise: Floats  # slope beyond the last point [MPa], (curves,)
-    linear: NDArray[np.bool_]  # whether a joint may go there; else the run ends, (curves,)
+    linear: NDArray[np.bool_]  # true if a joint may go beyond it; else the run ends, (curves,)
     of: Ints  # curve of each bushing, -1: none, (bushings,)
     axis: Ints  # axis of the bushing that follows it, 0: x, 1: y, (bushings,)
     length: Floats  # [mm], (bushings,)

@@ -25,16 +25,16 @@ class Press(Frozen):
     preload: float  # spring force at the free length [N]
     free_length: float  # [mm]
     carrier_mass: float  # [g]
-    touch: float  # where the spring has its free length [mm]
-    start: float  # static equilibrium at the start, or where the user has it begin [mm]
-    begins: float | None = None  # from `touch`, where the user gave it [mm]; None: in balance
-    speed: float = 0.0  # along `direction` as the run begins [mm/ms]
-    balance: float | None = None  # static equilibrium, where the run does not begin there [mm]
-    stops: StopsPart | None = None  # from the centre as given
+    touch: float  # place where the spring has its free length [mm]
+    start: float  # place in static equilibrium at the start, or the user's start [mm]
+    begins: float | None = None  # start from `touch`, if the user gave it [mm]; None: in balance
+    speed: float = 0.0  # speed along `direction` as the run begins [mm/ms]
+    balance: float | None = None  # place in static equilibrium, where the run does not begin there [mm]
+    stops: StopsPart | None = None  # stops, from the centre as given
 
     @property
     def off(self) -> float:
-        """How far from its balance it begins [mm]."""
+        """Distance of its start from its balance [mm]."""
         return 0.0 if self.balance is None else abs(self.start - self.balance)
 
 
@@ -43,7 +43,7 @@ class OneWay:
     """A clutch that lets a roller turn freely in one sense, against ground or the shaft that drives it."""
 
     direction: int  # sense about the axis that is free, 1 or -1
-    torque: float  # which it takes at the creep [N mm]
+    torque: float  # torque that it takes at the creep [N mm]
     creep: float  # [rad/ms]
 
 
@@ -51,17 +51,17 @@ class OneWay:
 class ArmPart(Frozen):
     """An arm that carries a roller, turning about an axis parallel to the roller's through the pivot."""
 
-    pivot: Floats  # [mm], (3,)
-    center: Floats  # of its mass as the run begins [mm], (3,)
-    mass: float  # without the roller [g]
-    inertia: float  # about its centre of mass, along the axis [g mm^2]
-    torque: float  # of its spring as the run begins [N mm]
+    pivot: Floats  # point of its axis [mm], (3,)
+    center: Floats  # centre of its mass as the run begins [mm], (3,)
+    mass: float  # mass without the roller [g]
+    inertia: float  # inertia about its centre of mass, along the axis [g mm^2]
+    torque: float  # torque of its spring as the run begins [N mm]
     stiffness: float  # [N mm/rad]
     damping: float  # [N mm ms/rad]
-    sprung: bool  # whether it has a spring or damping
-    angle: float = 0.0  # by which it is turned as the run begins, from the roller's centre as given [rad]
-    speed: float = 0.0  # as the run begins [rad/ms]
-    stops: StopsPart | None = None  # from the roller's centre as given
+    sprung: bool  # true if it has a spring or damping
+    angle: float = 0.0  # turn as the run begins, from the roller's centre as given [rad]
+    speed: float = 0.0  # angular velocity as the run begins [rad/ms]
+    stops: StopsPart | None = None  # stops, from the roller's centre as given
 
 
 @dataclass(frozen=True)
@@ -70,16 +70,16 @@ class RimPart(Frozen):
     axis from the x axis of its body, as the run begins. Each ends where the next begins, the last a whole
     turn after the first one's beginning."""
 
-    name: tuple[str, ...]  # s0, ... those that are given; g0, ... what is behind the sector of that number
-    begin: Floats  # increasing, (n,)
+    name: tuple[str, ...]  # s0, ... those that are given; g0, ... the gap behind the sector of that number
+    begin: Floats  # angles at which sectors begin, increasing, (n,)
     end: Floats
     radius: Floats  # [mm]
-    friction: Floats  # relative to that of a contact
+    friction: Floats  # friction relative to that of a contact
     stiffness: Floats
-    restitution: Floats  # nan: that of a contact
-    own: tuple[bool, ...]  # whether the radius is given, and not the roller's
+    restitution: Floats  # restitution; nan: that of a contact
+    own: tuple[bool, ...]  # true if the radius is given, and not the roller's
     blend: float  # [rad]
-    facets: tuple[int, ...]  # boxes by which a text shows each
+    facets: tuple[int, ...]  # number of boxes by which a text shows each sector
 
     def __len__(self) -> int:
         return len(self.name)
@@ -90,18 +90,18 @@ class CoverPart:
     """A cover of rubber or foam on a roller, and the nip that it makes under one force (see model.covers)."""
 
     thickness: float  # [mm]
-    modulus: float  # Young's [MPa]
+    modulus: float  # Young's modulus [MPa]
     poisson: float
-    hardness: float | None  # degrees of Shore A that the modulus follows from
-    other: str  # the roller that faces it, "": a flat face
-    force: float  # [N]
-    width: float  # of the nip along the axis [mm]
+    hardness: float | None  # hardness in degrees of Shore A that the modulus follows from
+    other: str  # name of the roller that faces it, "": a flat face
+    force: float  # force of the nip [N]
+    width: float  # width of the nip along the axis [mm]
     half: float  # half-width of the nip across it [mm]
-    pressure: float  # the greatest [MPa]
-    depth: float  # by which the other surface is pressed into the cover [mm]
-    gain: float  # v/(omega R) - 1 of a sheet on it
+    pressure: float  # greatest pressure [MPa]
+    depth: float  # depth of the other surface in the cover [mm]
+    gain: float  # gain v/(omega R) - 1 of a sheet on it
     bend: float  # of the gain that a run has, (gain - bend) u + bend u^2, u the depth over that at the force
-    misfit: float  # of the law k z^1.5 from half to twice the force, relative to the force of the layer
+    misfit: float  # error of the law k z^1.5 from half to twice the force, relative to the force of the layer
     gain_misfit: float  # greatest error of the law of the gain there
 
 
@@ -109,10 +109,10 @@ class CoverPart:
 class MachinePart(Frozen):
     """A part of the machine that has a body, of any kind."""
 
-    kind: ClassVar[str]  # what one is called in a sentence
+    kind: ClassVar[str]  # word for one in a sentence
     name: str
     body: int  # its row in Bodies
-    center: Floats  # as the user gave it, before a spring moves it [mm], (3,)
+    center: Floats  # centre as the user gave it, before a spring moves it [mm], (3,)
 
     @property
     def round(self) -> tuple[float, float] | None:
@@ -131,29 +131,29 @@ class RollerPart(MachinePart):
     mass: float
     inertia_axial: float  # [g mm^2]
     inertia_transverse: float
-    speed: float | None  # prescribed [rad/ms], of a profile the greatest in size; None: free to turn
+    speed: float | None  # prescribed speed [rad/ms], of a profile the greatest in size; None: free to turn
     ramp: float  # [ms]
     profile: Floats | None  # corners as given: time [ms], speed [rad/ms], (n, 2); None: speed and ramp
     one_way: OneWay | None  # with a drive: the speed is that of the shaft, which the roller may overrun
     press: Press | None
-    carried: tuple[float, float] = (0.0, 0.0)  # mass [g] and inertia about the axis [g mm^2] of what is on it
+    carried: tuple[float, float] = (0.0, 0.0)  # mass [g] and inertia about the axis [g mm^2] of meshes on it
     rim: RimPart | None = None
     arm: ArmPart | None = None
     cover: CoverPart | None = None
     axle: AxlePart | None = None  # with a motor, and behind it: the speed is the one that it aims at
     leader: int = -1  # body of the roller that leads its shaft, -1: it turns by itself, or leads
-    ratio: float = 1.0  # its turns for one of that
-    spin: float = 0.0  # of one without a drive as the run begins [rad/ms]
+    ratio: float = 1.0  # number of its turns for one turn of the leader
+    spin: float = 0.0  # initial spin of a roller without a drive [rad/ms]
 
     @property
     def loaded_mass(self) -> float:
-        """Mass of the roller and of what is on it [g]."""
+        """Mass of the roller and of the meshes on it [g]."""
         mass, _ = self.carried
         return self.mass + mass
 
     @property
     def loaded_inertia(self) -> float:
-        """Inertia about the axis of the roller and of what is on it [g mm^2]."""
+        """Inertia about the axis of the roller and of the meshes on it [g mm^2]."""
         _, inertia = self.carried
         return self.inertia_axial + inertia
 
@@ -254,7 +254,7 @@ class PlanePart(MachinePart):
 
     @property
     def travel(self) -> Floats:
-        """How far it may go along each global axis, either way: by the length of its spring [mm], (3,)."""
+        """Largest displacement along each global axis, either way: the length of its spring [mm], (3,)."""
         return np.zeros(3) if self.press is None else self.press.free_length * np.abs(self.press.direction)
 
 
@@ -265,17 +265,17 @@ class GuidePart(MachinePart):
     y."""
 
     kind: ClassVar[str] = "guide"
-    axes: Floats  # in columns; those of its body, too, (3, 3)
-    radius: float  # of the face, or of the middle where both sides are touched; 0: a line [mm]
+    axes: Floats  # axes in columns; those of its body, too, (3, 3)
+    radius: float  # radius of the face, or of the middle where both sides are touched; 0: a line [mm]
     middle: float  # angle of the middle of an arc [rad]
     half_angle: float
-    length: float  # of a line [mm]
+    length: float  # length of a line [mm]
     width: float
     thickness: float
-    sides: int  # that are touched: 1 left of a line or inside of an arc, 2 the other, 3 both
+    sides: int  # touched sides: 1 left of a line or inside of an arc, 2 the other, 3 both
     side: str
     mass: float
-    facets: int  # boxes by which a text shows it
+    facets: int  # number of boxes by which a text shows it
     edges: tuple[float, float] = (0.0, 0.0)  # radii of the edges of its upper and its lower face [mm]
     ends: int = 0  # its free ends as a bit mask, see model.ends
     moving: MovingPart | None = None
@@ -288,21 +288,21 @@ class MeshPart(MachinePart):
 
     kind: ClassVar[str] = "mesh"
     file: str
-    scale: float  # of the file's numbers to mm
+    scale: float  # factor from the file's numbers to mm
     at: str  # nodes or centres
     on: int  # index of the roller that it moves with, -1: fixed
-    angles: tuple[float, float, float]  # about the global x, then y, then z axis [rad]
-    axes: Floats  # of the file, in columns, (3, 3)
-    corners: Floats  # file axes, counter-clockwise as seen from outside [mm], (n, 3)
-    triangles: Ints  # corners of each, (m, 3)
-    flat: int  # triangles with two corners in one place, which are left out
+    angles: tuple[float, float, float]  # angles about the global x, then y, then z axis [rad]
+    axes: Floats  # axes of the file, in columns, (3, 3)
+    corners: Floats  # corners in file axes, counter-clockwise as seen from outside [mm], (n, 3)
+    triangles: Ints  # corners of each triangle, (m, 3)
+    flat: int  # number of triangles with two corners in one place, which are left out
     volume: float  # [mm^3]
-    middle: Floats  # of the mass, file axes [mm], (3,)
+    middle: Floats  # centre of mass, file axes [mm], (3,)
     principal: Floats  # axes of the inertia, file axes, in columns, (3, 3)
     gyration: Floats  # inertia about them over mass [mm^2], (3,)
     mass: float
-    density: float | None  # that the user gave in place of the mass [g/mm^3]
-    edge_radius: float = 0.0  # that outer sides of sheets meet at its edges [mm]
+    density: float | None  # density that the user gave in place of the mass [g/mm^3]
+    edge_radius: float = 0.0  # radius with which outer sides of sheets meet its edges [mm]
     moving: MovingPart | None = None
 
 

@@ -37,7 +37,7 @@ from mdlgen.model.tables.sheets import SheetPart
 P = TypeVar("P")
 
 GROUND = -1
-# A contact that goes from touching to too deep in fewer than so many steps may be held by finer ones.
+# A contact that gets too deep within fewer steps than this after touching may be held by finer steps.
 FEW_STEPS = 4
 AXES = ("x", "y", "z")
 
@@ -54,7 +54,7 @@ class Anchor(Frozen):
     node: Ints  # nearest grid node as in Bushings.node; for the text
     at: tuple[float, float]  # sheet axes, from the centre [mm]
     edge: str | None
-    formulas: tuple[str, str] = ("", "")  # of `at`, as of a Parameter
+    formulas: tuple[str, str] = ("", "")  # formulas of `at`, as of a Parameter
 
 
 @dataclass(frozen=True)
@@ -65,8 +65,8 @@ class Loads(Frozen):
     local: Floats  # (n, 3)
     force: Floats  # [N], (n, 3)
     moment: Floats  # [N mm], (n, 3)
-    entry: Ints  # of the spec's list, (n,)
-    edge: tuple[str, ...]  # of each entry; empty: at a point
+    entry: Ints  # index in the spec's list, (n,)
+    edge: tuple[str, ...]  # edge of each entry; empty: at a point
     # corners of a factor over time of each entry [ms, 1], (n, 2), (0, 2): 1; none at all: none has any
     profiles: tuple[Floats, ...] = ()
 
@@ -81,7 +81,7 @@ class Tension:
     """A clamped sheet that is pulled at the opposite edge."""
 
     sheet: int
-    axis: int  # of the pull, 0: x, 1: y
+    axis: int  # axis of the pull, 0: x, 1: y
     length: float  # sum of the joint lengths [mm]
 
 
@@ -94,8 +94,8 @@ class Parameter:
     label: str
     value: float  # internal units
     unit: str  # internal unit, as the user may write it
-    path: tuple[str | int, ...] | None  # where it stands in the spec; None: computed
-    formula: str = ""  # over the parameters of the scene, as the user wrote it; "": a number
+    path: tuple[str | int, ...] | None  # path in the spec; None: computed
+    formula: str = ""  # formula over the parameters of the scene, as the user wrote it; "": a number
     follows: str = ""  # a formula over other rows, see parameters.starts; "": it does not
 
 
@@ -109,10 +109,10 @@ class RunSettings:
     tolerance: float
     print_step: float
     symmetry: bool  # a scene that is its own mirror image may be halved
-    threads: int = 1  # of scenes of older versions; it has no effect
+    threads: int = 1  # key of scenes of older versions; it has no effect
     sleep: bool = True  # sheets that rest may be left out
-    limit: float | None = None  # wall time after which a run ends with what there is; None: none
-    margin: float | None = None  # that pairs are chosen with at first [mm]; None: of an older file
+    limit: float | None = None  # wall time after which a run ends with its part so far; None: none
+    margin: float | None = None  # margin for the first choice of pairs [mm]; None: of an older file
 
 
 @dataclass(frozen=True)
@@ -138,10 +138,10 @@ class Model(Frozen):
     tension: Tension | None
     parameters: tuple[Parameter, ...]
     run: RunSettings
-    unfollowed: tuple[tuple[str, str], ...] = ()  # formulas of what is no Parameter: places, texts
+    unfollowed: tuple[tuple[str, str], ...] = ()  # formulas of values without a Parameter: places, texts
     following: tuple[int, ...] = ()  # entries of the contacts whose smoothing follows from the speeds
-    require: tuple[str, ...] = ()  # what a run is judged by, see spec.require
-    author: str = ""  # of the design, for the head of the page
+    require: tuple[str, ...] = ()  # requirements of a run, see spec.require
+    author: str = ""  # author of the design, for the head of the page
     revision: str = ""
     plastic: Plastic = field(default_factory=no_plastic)
     corners: Corners = field(default_factory=no_corners)  # Poisson's effect of plates

@@ -16,7 +16,7 @@ class StopsPart:
 
     low: float
     high: float
-    stiffness: float  # of both, beyond them [N/mm, N mm/rad]
+    stiffness: float  # stiffness of both, beyond them [N/mm, N mm/rad]
     restitution: float
 
 
@@ -25,16 +25,16 @@ class MovingPart(Frozen):
     """A turn about a fixed axis, or a slide along a line. Its places, which are angles [rad] or ways [mm],
     count from where the part is given, as the run begins."""
 
-    turns: bool  # about an axis; else it slides
+    turns: bool  # true if it turns about an axis; else it slides
     axis: Floats  # unit vector of the axis, or the direction of the slide, (3,)
-    pivot: Floats  # a point of the axis; of a slide zero [mm], (3,)
-    corners: Floats  # prescribed: time [ms], place, and its rate there, (n, 3); (0, 3): it is free
-    names: tuple[str, ...] = ()  # of places that rules may command
-    places: Floats = field(default_factory=lambda: np.zeros(0))  # (names,)
-    inertia: float = 0.0  # of what is free: about the axis [g mm^2], or the mass [g]
+    pivot: Floats  # a point of the axis; zero for a slide [mm], (3,)
+    corners: Floats  # prescribed motion: time [ms], place, and its rate there, (n, 3); (0, 3): it is free
+    names: tuple[str, ...] = ()  # names of places that rules may command
+    places: Floats = field(default_factory=lambda: np.zeros(0))  # places of these names, (names,)
+    inertia: float = 0.0  # inertia of a free part: about the axis [g mm^2], or the mass [g]
     stiffness: float = 0.0
     damping: float = 0.0
-    force: float = 0.0  # of its spring at the place 0, or its torque
+    force: float = 0.0  # force of its spring at the place 0, or its torque
     moment: Floats = field(default_factory=lambda: np.zeros(3))  # mass by its arm from the pivot [g mm], (3,)
     stops: StopsPart | None = None
 

@@ -1,4 +1,4 @@
-"""Sensors and rules: what a machine sees of its sheets, and what it does then."""
+"""Sensors and rules of a machine: readings of its sheets, and actions."""
 
 from __future__ import annotations
 
@@ -11,12 +11,12 @@ from mdlgen.model.tables.bodies import Frozen
 
 @dataclass(frozen=True)
 class SensorPart(Frozen):
-    """A sensor: it sees what is on the way `way` from any point between both `ends`."""
+    """A sensor: it sees sheets on the way `way` from any point between both `ends`."""
 
     name: str
     kind: str  # beam, point or line
-    ends: Floats  # of a beam and a point twice the same one [mm], (2, 3)
-    way: Floats  # where it looks to, as far as it sees [mm], (3,)
+    ends: Floats  # ends of the line; for a beam and a point twice the same [mm], (2, 3)
+    way: Floats  # direction of the view, as long as it sees [mm], (3,)
     hysteresis: float  # [mm]
     sheets: Ints  # numbers of the sheets that it sees
 
@@ -26,10 +26,10 @@ class Order(Frozen):
     """One thing that a rule does."""
 
     kind: str  # speed, press, torque, move, enter, go, end
-    name: str  # of the part, the stream or the state; empty: none
+    name: str  # name of the part, the stream or the state; empty: none
     value: float  # a speed about the axis [rad/ms], a force [N], a torque [N mm], a place [rad, mm]
-    ramp: float  # time that it takes [ms]
-    sheets: tuple[int, ...] = ()  # numbers of those of which the next one comes in
+    ramp: float  # duration of the change [ms]
+    sheets: tuple[int, ...] = ()  # numbers of the sheets of which the next one comes in
 
 
 @dataclass(frozen=True)
@@ -39,7 +39,7 @@ class RulePart(Frozen):
     when: str
     after: float  # [ms]
     once: bool
-    states: tuple[str, ...]  # in which it holds; empty: all
+    states: tuple[str, ...]  # states in which it holds; empty: all
     orders: tuple[Order, ...]
 
 
@@ -50,7 +50,7 @@ class Reactions(Frozen):
     sensors: tuple[SensorPart, ...] = ()
     rules: tuple[RulePart, ...] = ()
     amounts: tuple[tuple[str, float, tuple[float, float, float, float]], ...] = ()  # parameters, dimensions
-    begins: str = ""  # the state in which the machine begins; empty: in none
+    begins: str = ""  # initial state of the machine; empty: it has none
     streams: tuple[tuple[str, tuple[int, ...]], ...] = ()  # each with the numbers of its sheets
 
     def __bool__(self) -> bool:

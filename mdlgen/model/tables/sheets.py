@@ -24,7 +24,7 @@ class ZonePart(Frozen):
     """A part of a sheet that is unlike the rest; see the spec for what the factors mean."""
 
     name: str
-    share: Floats  # of each box that it covers, (boxes,)
+    share: Floats  # part of each box that it covers, (boxes,)
     thickness: float | None  # None: as the sheet
     density: float
     stiffness: float
@@ -40,7 +40,7 @@ class Crease:
     size: tuple[float, float]  # from the corner to the ends of the crease; of a fold zero [mm]
     line: tuple[int, int]  # a fold is on this line along its direction; an ear turns about where both cross
     angle: float  # [rad]
-    stiffness: float  # of its joints in bending, relative to that of the sheet
+    stiffness: float  # bending stiffness of its joints, relative to that of the sheet
     per_length: float | None = None  # stiffness of the crease itself [N mm/rad per mm]; None: `stiffness`
 
 
@@ -68,8 +68,8 @@ class Bend(Frozen):
     """The stress-free shape of a sheet that is not flat."""
 
     start: str  # bent: it begins so; flat: it begins flat
-    axis: int  # that is bent, 0: x, 1: y, -1: dog-ears
-    radius: float  # of the curl [mm], inf: none
+    axis: int  # axis that is bent, 0: x, 1: y, -1: dog-ears
+    radius: float  # radius of the curl [mm], inf: none
     creases: tuple[Crease, ...]
     frames: Frames
 
@@ -93,9 +93,9 @@ class SheetPart(Frozen):
     n_y: int
     d_x: float  # mean length of a box
     d_y: float
-    lines_x: Floats  # where the lines between boxes are, from the sheet's centre [mm], (n_x + 1,)
+    lines_x: Floats  # coordinates of the lines between boxes, from the sheet's centre [mm], (n_x + 1,)
     lines_y: Floats  # (n_y + 1,)
-    graded: tuple[bool, bool]  # whether the lengths along x, along y are given box by box
+    graded: tuple[bool, bool]  # true if the lengths along x, along y are given box by box
     zones: tuple[ZonePart, ...]
     bend: Bend | None
     thickness: float
@@ -103,23 +103,23 @@ class SheetPart(Frozen):
     layout: str
     grid: str
     center: Floats  # (3,)
-    angles: tuple[float, float, float]  # about the global x, then y, then z axis [rad]
+    angles: tuple[float, float, float]  # angles about the global x, then y, then z axis [rad]
     rotation: Floats  # (3, 3)
     velocity: Floats
     spin: Floats
     surface: bool
     clamp: Clamp | None
-    bending: tuple[str, str]  # which of (k_tx, D_cd) and of (k_ty, D_md) the user gave
-    twist: bool  # whether joints have a twist of their own: D_twist was given, or layout plate
-    in_plane: bool  # whether k_tz was given
+    bending: tuple[str, str]  # keys that the user gave: one of (k_tx, D_cd), one of (k_ty, D_md)
+    twist: bool  # true if joints have a twist of their own: D_twist was given, or layout plate
+    in_plane: bool  # true if k_tz was given
     rotation_damping: str  # inertia or paper, with a ratio (Eq. 7); time: Kelvin and Voigt's
     derived: dict[str, float]
-    damping_times: tuple[float, float] | None = None  # of MD and CD [ms]; None: by a ratio
+    damping_times: tuple[float, float] | None = None  # damping times of MD and CD [ms]; None: by a ratio
     yields: tuple[float, float] | None = None  # curvatures along MD and CD [1/mm]; None: it is elastic
-    enters: float = 0.0  # when it comes in [ms]; 0: it is there as the run begins; nan: as a rule says
+    enters: float = 0.0  # time at which it comes in [ms]; 0: present as the run begins; nan: by a rule
     # planes beyond which it has left, a tuple each: axis, place on it [mm], and the side that is beyond
     out: tuple[tuple[int, float, float], ...] = ()
-    out_at_rest: bool = False  # it has left where it is asleep
+    out_at_rest: bool = False  # true if it leaves when it is asleep
 
     @property
     def count(self) -> int:

@@ -17,7 +17,7 @@ from mdlgen.report.motion import names, poses
 from mdlgen.results.result import Result
 from mdlgen.version import version
 
-LASTS = 10.0  # seconds that an animation takes: what happens in 50 ms is too fast to be seen
+LASTS = 10.0  # seconds that an animation takes: motion within 50 ms is too fast to be seen
 _FLOAT, _INDEX = 5126, 5125
 _VERTICES, _INDICES = 34962, 34963
 # linear colours and opacity of bodies by kind

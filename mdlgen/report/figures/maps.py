@@ -20,7 +20,7 @@ _WAYS = ("x (MD)", "y (CD)")
 _NOTHING = 1e-10
 # Inches: the longer side of a sheet, the widest a sheet or a page gets, gaps, the writing above a map.
 _LONG, _WIDEST, _PAGE, _GAP, _HEAD = 2.8, 8.0, 9.0, 0.3, 0.55
-_NARROWEST = 1.8  # what the writing takes
+_NARROWEST = 1.8  # width of the text
 
 
 class Map(NamedTuple):

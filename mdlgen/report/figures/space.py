@@ -42,8 +42,8 @@ def _corner() -> Floats:
 
 
 VIEWS = (_SIDE, _corner())
-Frame = tuple[Floats, Floats]  # least and greatest of what a panel shows [mm], (2,) each
-Over = Callable[[Any, Floats, Frame], None]  # what is drawn over a panel, of a view and its frame
+Frame = tuple[Floats, Floats]  # least and greatest coordinates in a panel [mm], (2,) each
+Over = Callable[[Any, Floats, Frame], None]  # draws over a panel, with a view and its frame
 
 
 class Space:
@@ -91,7 +91,7 @@ class Space:
 
 
 def frame(seen: list[Floats]) -> Frame:
-    """Least and greatest of what is seen at all times, with a margin."""
+    """Least and greatest visible coordinates at all times, with a margin."""
     low = np.min([points[:, :2].min(axis=0) for points in seen], axis=0)
     high = np.max([points[:, :2].max(axis=0) for points in seen], axis=0)
     margin = 0.06 * float((high - low).max())

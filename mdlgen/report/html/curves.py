@@ -98,7 +98,7 @@ def _across(result: Result, sheet: int, way: Floats) -> Floats | None:
 
 
 def _tilt(result: Result, at: Ints) -> list[Panel]:
-    """How far the mean normal of a sheet's boxes, by their mass, leans along its first x and y axes."""
+    """Tilt of the mean normal of a sheet's boxes, by their mass, along its first x and y axes."""
     from mdlgen.model.rotations import column
 
     panel = Panel("tilt", "Tilt of the sheet", "deg")

@@ -100,7 +100,7 @@ def _parameters(results: Sequence[Result]) -> list[dict[str, Any]]:
 
 
 def _distance(first: Result, other: Result) -> dict[str, Any]:
-    """How far a run is from the first, or why that cannot be said."""
+    """Distance of a run from the first one, or the reason why it is not known."""
     try:
         found = compare(first, other)
     except SpecError as error:

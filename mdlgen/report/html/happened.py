@@ -21,7 +21,7 @@ def happened(events: Sequence[Mapping[str, Any]]) -> list[dict[str, Any]]:
             or event.get("sensor")
             or ", ".join(event.get("held_by", ()))
         )
-        # what is alike as it is shown: both sides of a machine
+        # events that look alike: both sides of a machine
         key = shown(event["time_ms"]), kind, text
         row = rows.setdefault(key, {"time_ms": event["time_ms"], "kind": kind, "places": [], "text": text})
         row["places"].append(place)

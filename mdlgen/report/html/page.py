@@ -69,7 +69,7 @@ def page(results: Sequence[Result], names: Sequence[str] = (), against: Against 
 
 
 def prepare(model: Model) -> None:
-    """Loads what the page is made with, and works out what does not wait for the run."""
+    """Loads the modules for the page, and computes all that does not depend on the run."""
     environment().get_template("page.html.j2")
     for read in (library, licences, style, partial(scripts, _SCRIPTS)):
         read()

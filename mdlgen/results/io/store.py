@@ -67,7 +67,7 @@ def save(result: Result, folder: Path, also: Mapping[str, bytes] | None = None) 
 
 
 def prepare(model: Model) -> None:
-    """Loads what the files are made with, and works out what does not wait for the run."""
+    """Loads the modules for the files, and computes all that does not depend on the run."""
     import h5py  # noqa: F401
 
     from mdlgen.results import events  # noqa: F401
@@ -79,7 +79,7 @@ def hdf5(result: Result) -> bytes:
     """result.h5: states and statistics in the Model's units, with the names of bodies and contact rows, what
     the joints of the sheets bore at most (`joints/...`; see `results.strain`), and the Model (`model/...`).
 
-    The same result gives the same bytes: no times of writing are kept; `took` and `ran_at` alone
+    The same result gives the same bytes: no times of writing are stored; `took` and `ran_at` alone
     have those of the run.
     """
     import h5py

@@ -1,4 +1,4 @@
-"""How far a run is from what another program recorded of the same scene, on one clock.
+"""Difference of a run from a recording of the same scene by another program, on one clock.
 
 Compared are the stored times of the run that the recording covers. Where it has no state at one of them, it
 is interpolated: by the cubic through places and velocities where it has both, elsewhere by straight lines.
@@ -21,7 +21,7 @@ from mdlgen.results.recorded.recording import Recording
 from mdlgen.results.result import Result
 from mdlgen.results.wording import ROUND_OFF
 
-ROUNDED = 1e-5  # of the end of the run: what times with six digits are known to
+ROUNDED = 1e-5  # relative to the end of the run: precision of times with six digits
 _LAG = 0.1  # of the common time: the largest shift that is looked for
 _LAGS = 101  # shifts tried, before the best is found more closely
 _HALVINGS = 40
@@ -48,7 +48,7 @@ class Apart:
 
 @dataclass(frozen=True)
 class Shift:
-    """Where the recording fits better by so much later: its mean relative difference as it is, and then."""
+    """A shift in time by which the recording fits better: its mean relative difference before and after."""
 
     later_ms: float
     before: float
@@ -68,7 +68,7 @@ class Against:
     unknown: tuple[str, ...]  # requests and columns of the file that are not of this scene
 
     def record(self) -> dict[str, Any]:
-        """As plain values; no series."""
+        """The comparison as plain values; no series."""
         found = asdict(self)
         for one in found["quantities"]:
             for name in ("time", "here", "there"):
@@ -222,7 +222,7 @@ def _size(values: Floats, moves: bool) -> float:
 
 
 def _shift(found: list[Apart], pairs: list[Pair], recording: Recording) -> Shift | None:
-    """By how much later the recording would fit better, if by more than half."""
+    """Shift in time by which the recording would fit better, if by more than half."""
     time = found[0].time
     span = float(time[-1] - time[0])
     if len(time) < 3 or len(recording.time) < 3:

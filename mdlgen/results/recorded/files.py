@@ -1,4 +1,4 @@
-"""A file of another program, by what it holds."""
+"""A file of another program, recognised by its content."""
 
 from __future__ import annotations
 

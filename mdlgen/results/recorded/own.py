@@ -23,9 +23,9 @@ class Quantity:
     values: Floats  # (t, 1 or 3)
     labels: tuple[str, str]  # of its request: name and comment
     take: Callable[[Floats], Floats]  # picks (t, 1 or 3) of the six numbers of a request, (t, 6)
-    rate: bool = False  # whether the last three of the six are its rate [1/s]
-    moves: bool = False  # whether a difference is relative to how far it moved, not to its value
-    least: float = LEAST  # below which that is not what a difference is relative to
+    rate: bool = False  # true if the last three of the six are its rate [1/s]
+    moves: bool = False  # true if a difference is relative to how far it moved, not to its value
+    least: float = LEAST  # least scale of a difference
 
 
 def quantities(result: Result) -> list[Quantity]:

@@ -31,7 +31,7 @@ def is_plot(text: str) -> bool:
 
 
 def read(text: str, file: Path) -> Recording:
-    """A plot file. Raises OutputError with the line of what is damaged."""
+    """A plot file. Raises OutputError with the damaged line."""
     lines = text.splitlines()
     count = _count(lines, file)
     body = _HEADER + 2 * count
@@ -56,7 +56,7 @@ def read(text: str, file: Path) -> Recording:
 
 
 def _count(lines: list[str], file: Path) -> int:
-    """How many requests the third line says, in units that are known."""
+    """Number of requests by the third line, in known units."""
     words = lines[2].split() if len(lines) > 2 else []
     if len(words) < 2 or not words[0].isdigit() or not 0 < int(words[0]) <= 1_000_000:
         raise damaged(file, min(len(lines), 3), "the number of requests and their units are due here")

@@ -25,7 +25,7 @@ def is_table(text: str) -> bool:
 
 
 def read(text: str, file: Path) -> Recording:
-    """A table. Raises OutputError with the line of what is damaged."""
+    """A table. Raises OutputError with the damaged line."""
     lines = text.lstrip("\ufeff").splitlines()
     rows = list(csv.reader(lines, delimiter=_delimiter(lines[0])))
     head = [" ".join(name.split()) for name in rows[0]]

@@ -44,7 +44,7 @@ class MainEffect:
 
     @property
     def range(self) -> float:
-        """From the least mean of a group to the greatest."""
+        """Range from the least mean of a group to the greatest."""
         means = [group.mean for group in self.groups]
         return max(means) - min(means)
 
@@ -129,7 +129,7 @@ class Index:
 
 @dataclass(frozen=True)
 class Indices:
-    """Parts of a measure's variance: `first` of a variable alone, `total` with what it does with others."""
+    """Parts of a measure's variance: `first` of a variable alone, `total` with its interactions."""
 
     first: Index
     total: Index

@@ -56,4 +56,4 @@ def caveat(kind: str) -> str:
             f"the cases of --sample {kind} are spread evenly, not drawn one by one: mostly their part is "
             "nearer to the probability than the interval says, but only --sample random is sure of it"
         )
-    return f"the cases of a {kind} are not drawn at random: this is the part of them, no probability"
+    return f"the cases of a {kind} are not drawn at random: this is a share of the cases, not a probability"

@@ -21,7 +21,7 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class Task:
-    """The scene as it was written, and what is asked of each run of it."""
+    """The scene as it was written, and the request for each run of it."""
 
     spec: str  # the file's name, and its text
     text: str
@@ -37,7 +37,7 @@ class Task:
 
     @classmethod
     def of(cls, asked: Mapping[str, Any]) -> Task:
-        """From a journal. Raises KeyError, TypeError or ValueError for what is none."""
+        """From a journal. Raises KeyError, TypeError or ValueError for other data."""
         record = dict(asked)
         for name in ("sets", "limits", "events", "lets"):
             record[name] = tuple(str(item) for item in record[name])

@@ -1,1 +1,1 @@
-"""How cases are run: by processes of this machine or a cluster, each kept as it ends."""
+"""Execution of cases: by processes of this machine or a cluster, each stored as it ends."""

@@ -78,7 +78,7 @@ class Cluster:
             raise RefusedError(MISSING) from None
         self.address = address
         for name in list(logging.root.manager.loggerDict):
-            if name.partition(".")[0] == "distributed":  # what goes wrong is reported in one line
+            if name.partition(".")[0] == "distributed":  # errors are reported in one line
                 logging.getLogger(name).setLevel(logging.CRITICAL)
         try:
             self._client: Any = Client(address, timeout=PATIENCE, set_as_default=False)

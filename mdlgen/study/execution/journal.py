@@ -104,7 +104,7 @@ def read(folder: Path) -> tuple[Asked, dict[int, CaseRow]]:
 
 
 def _read(path: Path) -> tuple[Asked, dict[int, CaseRow], int]:
-    """As `read`, and how many bytes are whole lines; what was lost is not there, and will be run again."""
+    """As `read`, and the number of bytes in whole lines; lost cases are left out, and will be run again."""
     if not path.is_file():
         raise OutputError(f"{path.parent}: holds no study to continue; mdlgen sweep SPEC -o DIR begins one")
     data = read_at_most(path, MOST_BYTES, named=True)

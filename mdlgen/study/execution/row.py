@@ -14,7 +14,7 @@ OK, INACCURATE, REFUSED, FAILED, LOST = "ok", "inaccurate", "refused", "failed",
 
 @dataclass(frozen=True)
 class Times:
-    """How long a case took [s]: solving, its error estimate, what is done before it, all of it."""
+    """Times of a case [s]: solving, its error estimate, its preparation, all of it."""
 
     wall_s: float = 0.0
     estimate_s: float = 0.0
@@ -37,7 +37,7 @@ class CaseRow:
     solver: str = ""
     times: Times = Times()
     worker: str = ""
-    # files of the run where they are kept, by name; not in the journal
+    # files of the run where they are stored, by name; not in the journal
     files: dict[str, bytes] = field(default_factory=dict, compare=False, repr=False)
 
     @property
@@ -50,14 +50,14 @@ class CaseRow:
         return self.kind in (OK, INACCURATE)
 
     def json(self) -> dict[str, Any]:
-        """As the journal has it."""
+        """The row in the form of the journal."""
         record = asdict(self)
         del record["files"]
         return record
 
     @classmethod
     def of(cls, record: dict[str, Any]) -> CaseRow:
-        """The inverse of `json`. Raises KeyError, TypeError or ValueError for what is none."""
+        """The inverse of `json`. Raises KeyError, TypeError or ValueError for other data."""
         if record["kind"] not in (OK, INACCURATE, REFUSED, FAILED, LOST):
             raise ValueError(f"{record['kind']!r} is no kind of row")
         values = tuple((str(path), str(text)) for path, text in record["values"])

@@ -47,7 +47,7 @@ Evaluate = Callable[[list[tuple[float, ...]]], list[Outcome]]
 
 
 class Enough(Exception):
-    """As many runs as were allowed have been made."""
+    """The allowed number of runs has been used up."""
 
 
 def method(asked: str, variables: Variables, conditions: int) -> str:

@@ -99,7 +99,7 @@ def _column(column: Column, task: Task, count: int) -> dict[str, Any]:
 
 
 def _link(folder: Path, row: CaseRow) -> str:
-    """To the report of a case that has been kept; "" for others."""
+    """Link to the report of a stored case; "" for others."""
     name = Case(row.index, row.values).name
     return f"{name}/{PAGE}" if (folder / name / PAGE).is_file() else ""
 

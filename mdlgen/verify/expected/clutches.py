@@ -10,13 +10,13 @@ from mdlgen.verify.expected.units import SECOND
 from mdlgen.verify.tables import Table, table
 
 SPINS = (-200.0, -3.0, -0.05, 0.0, 0.05, 3.0, 200.0)
-"""Spins of a roller against what carries it at which the law of its clutch is looked at [rad/s]."""
+"""Relative spins of a roller at which the law of its clutch is evaluated [rad/s]."""
 IDLE = ("0",) * 5
 """Components that a clutch does not have: three forces, and two torques."""
 
 
 def clutch_times(times: Times, roller: str) -> tuple[float, ...]:
-    """Times at which the law of a clutch is looked at [s]: those of its shaft."""
+    """Times at which the law of a clutch is evaluated [s]: those of its shaft."""
     return times.get(f"mot_{roller}", (0.0,) * (longest(times) or 1))
 
 

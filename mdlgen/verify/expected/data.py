@@ -32,11 +32,11 @@ FACTORS = {
 
 
 def factor(unit: str) -> float:
-    """From the Model's unit to that of the text, for units that only a user's parameters have, too."""
+    """Factor from the Model's unit to that of the text, for units that only a user's parameters have, too."""
     if unit in FACTORS:
         return FACTORS[unit]
     _, mass, time, _ = parse_unit(unit).dimension
-    # the text has what weighs by kg; with a time, a mass is a force N by s^2/mm
+    # a unit of mass without time is in kg; with a time, a mass is a force N by s^2/mm
     return (KG if (mass, time) == (1.0, 0.0) else 1e-6**mass) * SECOND**time
 
 

@@ -13,13 +13,13 @@ from mdlgen.verify.tables import Table, table
 
 
 def load_points(model: Model) -> Floats:
-    """Where each load acts [mm], (n, 3)."""
+    """Place of each load [mm], (n, 3)."""
     loads, bodies = model.loads, model.bodies
     return bodies.position[loads.body] + np.einsum("nij,nj->ni", bodies.rotation[loads.body], loads.local)
 
 
 def load_times(times: Times) -> tuple[float, ...]:
-    """Times at which loads are looked at [s]; where none changes any one will do."""
+    """Times at which loads are evaluated [s]; a single one where none changes."""
     return times.get(OF_LOADS, (0.0,))
 
 

@@ -1,4 +1,4 @@
-"""Drives that a text must have, and the times at which their laws are looked at."""
+"""Expected drives of an MDL file, and the times at which their laws are evaluated."""
 
 from __future__ import annotations
 
@@ -14,13 +14,13 @@ from mdlgen.verify.expected.times import Times, longest
 from mdlgen.verify.expected.units import SECOND
 from mdlgen.verify.tables import Table, table
 
-RAMP_STATIONS = (0.0, 0.25, 0.5, 1.0, 2.0, 10.0)  # where the law of a drive is looked at, in ramps
+RAMP_STATIONS = (0.0, 0.25, 0.5, 1.0, 2.0, 10.0)  # where the law of a drive is evaluated, in ramps
 _STATIONS_WITHOUT = (0.0, 1e-3, 1.0)  # [s]
 OF_LOADS = "loads"  # the key of the times of all loads
 
 
 def stations(model: Model) -> Times:
-    """Times at which the law of each drive is looked at [s], by motion, and those of loads over time."""
+    """Times at which the law of each drive is evaluated [s], by motion, and those of loads over time."""
     found = {}
     for roller in model.rollers:
         if roller.speed is not None:

@@ -25,7 +25,7 @@ from mdlgen.verify.tables import Table
 
 
 def expected(model: Model, times: Times) -> dict[str, Table]:
-    """All tables of a Model, by kind; `times` are those at which the laws of drives are looked at [s]."""
+    """All tables of a Model, by kind; `times` are those at which the laws of drives are evaluated [s]."""
     return {
         "points": points(model),
         "bodies": bodies(model),

@@ -72,7 +72,7 @@ def _given_lengths(sheet: Sheet) -> Grading | None:
 
 
 def path_of(parameter: Parameter, sheets: set[str]) -> Path | None:
-    """Where a parameter stands in the pinned scene."""
+    """Path of a parameter in the pinned scene."""
     path = parameter.path
     if path is None and parameter.member in FRICTION:
         index = int(parameter.data_set.removeprefix("contact_"))

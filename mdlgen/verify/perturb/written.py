@@ -14,7 +14,7 @@ from mdlgen.model.parameters.starts import FOLLOWING, found, held
 from mdlgen.model.tables import SUPPORT, Anchor, Bushings, Loads, MachinePart, Model, Press, RollerPart
 from mdlgen.spec.scene import Scene
 
-BEGINS = ("touch", "start")  # of what is pressed, computed for the scene as it is written
+BEGINS = ("touch", "start")  # of pressed parts, computed for the scene as it is written
 
 
 def as_written(scene: Scene, base: Model, before: Scene) -> Model:

@@ -1,4 +1,4 @@
-"""Rows of what is shown, as a text, a deck or a script has it."""
+"""Rows of the graphics in an MDL file, a deck or a script."""
 
 from __future__ import annotations
 

@@ -64,7 +64,7 @@ NONE = Script({}, "")
 
 
 def read(text: str, file: str = "<script>") -> Script:
-    """Raises SpecError with the place of what is not as the companion has it."""
+    """Raises SpecError with the place of a statement that differs from the companion's form."""
     try:
         tree = ast.parse(text)
     except (SyntaxError, ValueError, RecursionError, MemoryError) as error:

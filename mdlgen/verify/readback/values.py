@@ -51,7 +51,7 @@ _RUN_ATTRIBUTES = {
 
 
 class ReadBack:
-    """Tables of some values; `stations` are the times [s] at which the laws of drives are looked at."""
+    """Tables of some values; `stations` are the times [s] at which the laws of drives are evaluated."""
 
     def __init__(self, stations: Mapping[str, tuple[float, ...]], markers: Mapping[str, Any] | None = None):
         self.stations = stations
@@ -148,7 +148,7 @@ class ReadBack:
         return [*axis, *laws], said
 
     def _load(self, name: str, record: Mapping[str, Any]) -> Row:
-        """Where a load acts, its forces at all times of loads, and its moments."""
+        """Place of a load, its forces at all times of loads, and its moments."""
         found = [*record["origin"]]
         for word in ("force", "torque"):
             for time in load_times(self.stations):

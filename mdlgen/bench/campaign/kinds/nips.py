@@ -28,7 +28,7 @@ def transported(draw: Draw, *, most: int = 300, stock: str = "") -> Drawn:
 
 @dataclass(frozen=True)
 class Drive:
-    """How fast the rollers of a scene convey."""
+    """Surface speed of the rollers of a scene."""
 
     speed: float  # [m/s]
     ramp: float  # [ms]

@@ -98,7 +98,7 @@ def _rest() -> list[BenchCase]:
         made.append(_of(f"pile of masses 1 : 100, {name}: laid down", sets, rests))
     for step in STEPS:
         whole = step * MOST_STEPS >= REST
-        # what has not come to rest yet is judged by the impulse, for which each step is stored
+        # a sheet that has not come to rest yet is judged by the impulse, for which each step is stored
         sets = (*_pile(5, (2, 2)), *within(step, REST), *(() if whole else (f"run.print_step={step:g} ms",)))
         made.append(_of(f"step {step * 1e-3:g} s: pile laid down", sets, rests if whole else sinks, step))
     soft = (*_pile(5, (2, 2), stiffness=SOFT), *lasting(REST))

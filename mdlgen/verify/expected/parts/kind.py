@@ -59,7 +59,7 @@ class Marker(NamedTuple):
 
 
 class Spring(NamedTuple):
-    """The spring of what is pressed, from where that stands to its anchor on ground."""
+    """The spring of a pressed part, from its place to its anchor on ground."""
 
     name: str
     body: str
@@ -81,7 +81,7 @@ class Bushing(NamedTuple):
 
 
 class Kind(Generic[P]):
-    """One kind of part: of what it does not say there is nothing."""
+    """One kind of part, without entities unless a kind adds them."""
 
     def bodies(self, model: Model, part: P) -> Iterable[Body]:
         return ()

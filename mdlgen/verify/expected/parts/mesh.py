@@ -68,7 +68,7 @@ def _under(model: Model, mesh: MeshPart) -> str:
 
 
 def meshes(model: Model) -> Table:
-    """Where the files' axes are."""
+    """Markers of the files' axes."""
     places = np.array([origin(m, model.rollers) for m in model.meshes]).reshape(-1, 3)
     axes = np.array([m.axes.T for m in model.meshes]).reshape(-1, 9)
     parts: dict[str, Part] = {"origin": (places, reach(model)), "axes": (axes, 1.0)}
