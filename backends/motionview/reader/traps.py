@@ -48,7 +48,8 @@ def _bushing(bush: Thing, notes: Notes) -> None:
     k, c, kt, ct = ([v for v in numbers[g] if isinstance(v, float)] for g in GROUPS)
     negative = min((*k, *c, *kt, *ct), default=0.0) < 0
     damped_only = len(kt) == 3 and not any(kt) and any(ct)
-    slack = len(k) == len(kt) == 3 and not any(k) and not any(kt)
+    preload = [*(numbers["force"] or ()), *(numbers["torque"] or ())]
+    slack = len(k) == len(kt) == 3 and not any((*k, *kt, *c, *preload))
     if not (negative or damped_only or slack):
         return
     chosen = bush.chosen("setbush", bush.part)
