@@ -94,8 +94,8 @@ UNVERIFIED = (
     ),
     Unverified(
         "a line of more than 528 characters, the longest that was seen",
-        "speeds and motions with many corners, clutches, motors, limiters, stops, and loads over time; no page has "
-        "a limit",
+        "speeds and motions with many corners, clutches, motors, limiters, stops, and loads over time; no "
+        "page has a limit",
         "the end of the line in the panel of a motion or a force",
         lambda scene: (
             any(r.corners > _LONG or r.free_sense or r.axle for r in scene.rollers)
