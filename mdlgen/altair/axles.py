@@ -37,7 +37,7 @@ def refuse_axles(model: Model, who: str) -> None:
             continue
         if axle.kind == CONTROLLED:
             raise RefusedError(
-                f"{who}: the motor of {roller.name} has speed control, whose integral is held at its limits "
+                f"{who}: the motor of {roller.name} has speed control, whose integral is held at limits "
                 "from step to step: no expression says that; leave control out, or run it by mdlgen run",
                 (*path, "control"),
             )
