@@ -82,7 +82,7 @@ FORMS: dict[str, Form] = {
     "Bushing": form(
         "bushing_api.htm",
         "label:text k:three c:three kt:three ct:three",
-        "i:Marker j:Marker torque:three",
+        "i:Marker j:Marker torque:three force:three",
         needed="i j k c kt ct",
     ),
     "SpringDamper": form(

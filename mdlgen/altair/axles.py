@@ -5,18 +5,8 @@ from __future__ import annotations
 from itertools import pairwise
 
 from mdlgen.errors import RefusedError
-from mdlgen.model.tables import Floats, Model
+from mdlgen.model.tables import Model
 from mdlgen.model.tables.axle import CONTROLLED, STEPPER, AxlePart
-
-
-def with_rotors(model: Model) -> Floats:
-    """Inertia of all bodies of a Model, (n, 3) [g mm^2]; that of a roller about its axis with what turns with
-    it: the rotor of its motor, behind the gear."""
-    found = model.bodies.inertia.copy()
-    for roller in model.rollers:
-        if roller.axle is not None:
-            found[roller.body, 2] += roller.axle.inertia
-    return found
 
 
 def pieces(axle: AxlePart) -> list[tuple[float, float]]:
@@ -47,7 +37,7 @@ def refuse_axles(model: Model, who: str) -> None:
             continue
         if axle.kind == CONTROLLED:
             raise RefusedError(
-                f"{who}: the motor of {roller.name} has speed control, whose integral is held at its limits "
+                f"{who}: the motor of {roller.name} has speed control, whose integral is held at limits "
                 "from step to step: no expression says that; leave control out, or run it by mdlgen run",
                 (*path, "control"),
             )

@@ -2,9 +2,13 @@
 
 from __future__ import annotations
 
+import math
+
 import numpy as np
 
+from mdlgen.altair.masses import own_inertia
 from mdlgen.errors import RefusedError
+from mdlgen.model.frames import frame
 from mdlgen.model.parts.kinds import kind_of
 from mdlgen.model.tables import Floats, Model, MovingPart
 
@@ -26,20 +30,37 @@ def places(moving: MovingPart, times: Floats) -> Floats:
     return found
 
 
+def spring_axes(moving: MovingPart) -> Floats:
+    """Axes of the spring of what moves freely, in columns: z along its line or its pivot, x near the global
+    axis that is farthest from that, (3, 3)."""
+    return frame(moving.axis, np.eye(3)[np.argmin(np.abs(moving.axis))])
+
+
 def refuse_moving(model: Model, who: str) -> None:
-    """Raises RefusedError, by name and path, for a part that forces move, and for stops."""
+    """Raises RefusedError, by name and path, for what turns freely with a mass that is too far from its pivot
+    for its inertia, for stops half a turn away, and for those of a press that has a mesh on its roller."""
     for part, moving in model.gates:
-        if moving.free:
-            word, key = ("pivot", "inertia") if moving.turns else ("slide", "mass")
+        if moving.free and moving.turns and (own := own_inertia(model, part, moving)) <= 0.0:
             raise RefusedError(
-                f"{who}: {part.name} moves freely about or along its {word}, which is not written yet; run "
-                f"it locally, or give the {word} a profile in place of {key}",
-                (kind_of(part).table, part.name, word, key),
+                f"{who}: {part.name} has an inertia of {moving.inertia:g} g*mm^2 about its pivot, less than "
+                f"its mass has there; its centre of mass would have {own:.4g} g*mm^2",
+                (kind_of(part).table, part.name, "pivot", "inertia"),
             )
-    for part in model.stopped:
-        word = "arm" if part.press is None else "press"
-        raise RefusedError(
-            f"{who}: the {word} of {part.name} has stops, which are not written yet. Run it locally, or "
-            "leave the stops out",
-            (kind_of(part).table, part.name, word, "stops"),
-        )
+        if (
+            moving.turns
+            and moving.free
+            and moving.stops is not None
+            and max(map(abs, moving.ends)) >= math.pi
+        ):
+            raise RefusedError(
+                f"{who}: a stop of {part.name} is half a turn or more from where it begins, and no page says "
+                "how AZ continues there; run it locally",
+                (kind_of(part).table, part.name, "pivot", "stops"),
+            )
+    for part in model.rollers:
+        if part.press is not None and part.press.stops is not None and part.carried[0] > 0.0:
+            raise RefusedError(
+                f"{who}: the press of {part.name}, with a mesh on its roller, has stops, whose damping would "
+                "follow from both masses; leave the stops out, or run it locally",
+                ("rollers", part.name, "press", "stops"),
+            )

@@ -41,6 +41,11 @@ class _Motion(Strict):
     unit: ClassVar[str]
     scale: ClassVar[float]  # of a number of the model in that unit
 
+    @property
+    def sprung(self) -> bool:
+        """Whether a spring or a damper acts on it."""
+        return any(getattr(self, key) != 0.0 for key in (self.push, "stiffness", "damping"))
+
     @model_validator(mode="before")
     @classmethod
     def _named(cls, value: Any) -> Any:

@@ -108,16 +108,28 @@ def law(text: str, time: float) -> float:
 def torques(text: str, points: Sequence[tuple[float, float]]) -> list[float]:
     """Values of the expression of a clutch, a motor, a limiter or a bearing at times [s] and spins about z
     [rad/s]. Raises Unreadable."""
-    now = {"time": 0.0, "spin": 0.0}
+    return _over(text, points, {"time": 0}, {"WZ": 1})
 
-    def measure(name: str, names: list[str]) -> float:
-        if name != "WZ":
-            raise Unreadable(f"{name} in a torque over the spin")
-        return now["spin"]
+
+def of_joint(text: str, points: Sequence[tuple[float, float]]) -> list[float]:
+    """Values of the expression of stops at places along or about z and their rates. Raises Unreadable."""
+    return _over(text, points, {}, {"DZ": 0, "AZ": 0, "VZ": 1, "WZ": 1})
+
+
+def _over(
+    text: str, points: Sequence[tuple[float, float]], names: Mapping[str, int], measures: Mapping[str, int]
+) -> list[float]:
+    """Values at points of two numbers; names and measures give which of both they stand for."""
+    now = points[0] if points else (0.0, 0.0)
+
+    def measure(name: str, markers: list[str]) -> float:
+        if name not in measures:
+            raise Unreadable(f"{name} in a force over a joint")
+        return now[measures[name]]
 
     value, found = _reader(text, measure), []
-    for now["time"], now["spin"] in points:
-        found.append(value({"time": now["time"], "pi": math.pi}))
+    for now in points:
+        found.append(value({"pi": math.pi, **{name: now[k] for name, k in names.items()}}))
     return found
 
 
@@ -129,7 +141,7 @@ def _step(x: float, x0: float, h0: float, x1: float, h1: float) -> float:
     return h0 + (h1 - h0) * s * s * (3.0 - 2.0 * s)
 
 
-_MEASURES = tuple(f"{kind}{axis}" for kind in "DVW" for axis in "XYZ")
+_MEASURES = ("AZ", *(f"{kind}{axis}" for kind in "DVW" for axis in "XYZ"))
 _FUNCTIONS = {
     "max": Function(max, 1, math.inf),
     "min": Function(min, 1, math.inf),

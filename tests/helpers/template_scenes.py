@@ -2,39 +2,9 @@
 
 from __future__ import annotations
 
-import json
-
-ROLLER = {
-    "center": ["0 mm", "0 mm", "-5 mm"],
-    "axis": "y",
-    "radius": "5 mm",
-    "width": "8 mm",
-    "mass": "0.5 g",
-}
-
-
-DRIVE = {"speed": "100 rad/s"}
-
-
-MOTOR = {"torque": "3 N*mm", "speed": "200 rad/s", "inertia": "20 g*mm^2", "gear": 4}
-
-
-TABLE = {
-    "table": [["0 rad/s", "4 N*mm"], ["80 rad/s", "3 N*mm"], ["90 rad/s", "0 N*mm"]],
-    "voltage": [["0 ms", 0.5], ["2 ms", 1]],
-}
-
-
-PRESS = {"direction": "-z", "stiffness": "0.3 N/mm", "preload": "3 N"}
-
-
-PLANE = {
-    "center": ["0 mm", "0 mm", "-20 mm"],
-    "normal": "z",
-    "size": ["90 mm", "80 mm", "10 mm"],
-    "mass": "9 g",
-}
-
+from template_basics import DRIVE, LINE, MESH, MOTOR, PLANE, PRESS, ROLLER, SOFT, TABLE
+from template_basics import put as _put
+from template_moving import FREE_GATES, GATES, STOPPED, WAY
 
 PLATES = (
     'materials.paper.D_cd="0.24 N*mm"',
@@ -57,10 +27,6 @@ MOVING = (
     'sheets.note.velocity=["1.5 m/s","0 m/s","-0.2 m/s"]',
     'sheets.note.spin=["3 rad/s","-7 rad/s","11 rad/s"]',
 )
-
-
-def _put(path: str, value: object) -> str:
-    return f"{path}={json.dumps(value)}"
 
 
 TURNED = ('sheets.note.turn="10 deg"',)
@@ -123,9 +89,6 @@ SHAFT = _put("shafts", {"main": {"rollers": {"under": 2}, "drive": DRIVE}})
 PLANES = _put("planes", {"level": PLANE, "tilted": PLANE | {"normal": [0.6, 0, 0.8]}})
 
 
-SOFT = PRESS | {"preload": "1 N"}  # what the spring itself holds, as nothing else does
-
-
 PLATES_ON_SPRINGS = _put(
     "planes",
     {
@@ -134,14 +97,6 @@ PLATES_ON_SPRINGS = _put(
         | {"normal": [0.6, 0, 0.8], "press": SOFT | {"direction": [0, 0.6, 0.8], "carrier_mass": "2 g"}},
     },
 )
-
-
-LINE = {"from": ["-9 mm", "0 mm", "1 mm"], "to": ["9 mm", "0 mm", "2 mm"], "axis": "y", "side": "left"}
-
-
-PIVOT = {"at": ["-9 mm", "0 mm", "0 mm"], "axis": "y"}
-PIVOT |= {"profile": [["1 ms", "0 deg"], ["2 ms", "20 deg"], ["4 ms", "-5 deg"]]}
-WAY = {"direction": [0.6, 0, 0.8], "profile": [["0 ms", "0 mm"]]}
 
 
 ARC = {"center": ["0 mm", "0 mm", "20 mm"], "radius": "20 mm", "from": "-90 deg", "to": "-84 deg"}
@@ -156,15 +111,6 @@ GUIDES = _put(
         "thin": {"line": LINE | {"side": "both"}, "width": "30 mm", "thickness": "0.2 mm"},
     },
 )
-
-
-GATES = (
-    _put("guides", {"flap": {"line": LINE, "width": "30 mm", "pivot": PIVOT}}),
-    _put("planes", {"tilted": PLANE | {"normal": [0.6, 0, 0.8], "slide": WAY}}),
-)
-
-
-MESH = {"file": "meshes/ramp.stl", "center": ["9 mm", "0 mm", "-3 mm"]}
 
 
 MESHES = _put(
@@ -380,17 +326,20 @@ PARTS: dict[str, dict[str, tuple[str, ...]]] = {
     "roller.mdl.j2": {
         "each kind": (ROLLERS,),
         "with a spin": (ONE_OF_EACH[0], "rollers.under.spin=10 rad/s"),
+        "with stops": (STOPPED,),
         "on a shaft": (_put("rollers", {"under": ROLLER}), SHAFT),
     },
     "plane.mdl.j2": {
         "level, with a normal of its own": (PLANES,),
         "pressed": (PLATES_ON_SPRINGS,),
         "on a slide": GATES[1:],
+        "freely": FREE_GATES[1:2],
     },
-    "guide.mdl.j2": {"straight and bent": (GUIDES,), "by a profile": GATES[:1]},
+    "guide.mdl.j2": {"straight and bent": (GUIDES,), "by a profile": GATES[:1], "freely": FREE_GATES[:1]},
     "mesh.mdl.j2": {
         "fixed, on a driven roller, on a pressed one": (ROLLERS, MESHES),
         "on a slide": (_put("meshes", {"wedge": MESH | {"slide": WAY}}),),
+        "freely": FREE_GATES[2:],
     },
     "contacts.mdl.j2": {
         "a zone with its own friction": (*CONTACTS, *UNLIKE, "sheets.note.zones.stripe.friction=2"),

@@ -12,7 +12,7 @@ from mdlgen.backends.motionsolve.reader.markers import Marker
 
 _ID = re.compile(r"(?<![\w.])[0-9]+(?![\w.])")
 _CALL = re.compile(r"[A-Za-z]\w*\([^()]*\)")
-_MEASURE = re.compile(r"[DVW][XYZ]\([^()]*\)")
+_MEASURE = re.compile(r"(?:[DVW][XYZ]|AZ)\([^()]*\)")
 _CURVED = re.compile(r"-LINSPL\((.*),0,([0-9]{1,10})\)")
 _CONTACT = re.compile(r"CONTACT\(([0-9]{1,10}),([01]),([1-8]),([0-9]{1,10})\)")
 _SIX = (2, 3, 4, 6, 7, 8)  # expressions of a request that are written

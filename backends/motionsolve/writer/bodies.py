@@ -5,7 +5,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from mdlgen.altair.axles import with_rotors
+from mdlgen.altair.masses import masses
 from mdlgen.backends.motionsolve.writer.axes import cosines
 from mdlgen.backends.motionsolve.writer.body import add_body
 from mdlgen.backends.motionsolve.writer.ids import GROUND_ID, body_id, graphic_id
@@ -33,9 +33,11 @@ def add_frames(deck: Deck, model: Model) -> None:
 def add_bodies(deck: Deck, model: Model) -> None:
     """All bodies of the Model, with the blocks that show them."""
     table = model.bodies
-    positions, velocities = triples(table.position), _velocities(model)
+    own = masses(model)
+    places, velocities = triples(table.position), _velocities(model)
+    positions = triples(own.place)
     turns = [cosines(rotation) for rotation in table.rotation]
-    properties = zip(table.mass.tolist(), with_rotors(model).tolist(), table.half.tolist(), strict=True)
+    properties = zip(own.mass.tolist(), own.inertia.tolist(), table.half.tolist(), strict=True)
     held = table.fixed.tolist()
     for k, (mass, inertia, half) in enumerate(properties):
         name, label = f"b_{table.name[k]}", table.label[k]
@@ -43,6 +45,9 @@ def add_bodies(deck: Deck, model: Model) -> None:
         if any(half):
             x, y, z = numbers(2.0 * h for h in half)
             marker = deck.bodies[-1].cm
+            if positions[k] != places[k]:  # it is shown where it is, not where its mass is
+                shown = f"gbox_{table.name[k]}_center_marker"
+                marker = deck.marker(shown, f"{label} - Center Marker", body_id(k), places[k], turns[k])
             deck.box(f"gbox_{table.name[k]}", label, graphic_id(k), marker, (x, y, z))
         if held[k]:
             how = "held" if model.sheet_of(k) else "fixed"

@@ -4,12 +4,11 @@ from __future__ import annotations
 
 import numpy as np
 
-from mdlgen.altair.moving import joint_of
 from mdlgen.backends.motionsolve.writer.axes import along, cosines
-from mdlgen.backends.motionsolve.writer.ids import GROUND_ID, body_id
-from mdlgen.backends.motionsolve.writer.rows import Deck, Motion, Spring
+from mdlgen.backends.motionsolve.writer.ids import GROUND_ID
+from mdlgen.backends.motionsolve.writer.rows import Deck, Spring
 from mdlgen.backends.motionsolve.writer.units import Triple, number, per_thousand, triples
-from mdlgen.model.tables import Floats, GuidePart, MeshPart, PlanePart, Press, RollerPart
+from mdlgen.model.tables import Floats, PlanePart, Press, RollerPart
 
 
 def fix(deck: Deck, name: str, label: str, body: int, at: Triple, on: int = GROUND_ID) -> None:
@@ -35,24 +34,6 @@ def join(
     i = deck.marker(f"{name}.joint_i", f"{label}-Marker I", body, at, axes)
     j = deck.marker(f"{name}.joint_j", f"{label}-Marker J", on, at, axes)
     return deck.joint(name, label, type, i, j)
-
-
-def add_gate(deck: Deck, part: GuidePart | PlanePart | MeshPart, place: Floats) -> None:
-    """The joint of a part that moves by a profile, at its pivot or at a place, and its motion; none of one
-    that does not move."""
-    moving = part.moving
-    if moving is None:
-        return
-    word, type = joint_of(moving)
-    at = moving.pivot if moving.turns else place
-    name, label = f"j_{part.name}_{word}", f"{word.capitalize()} of {part.name}"
-    joint = join(deck, name, label, type, body_id(part.body), GROUND_ID, at, moving.axis)
-    times = [per_thousand(t) for t in moving.corners[:, 0].tolist()]
-    ways = zip(times[:-1], times[1:], np.diff(moving.corners[:, 1]).tolist(), strict=True)
-    law = "+".join(f"STEP(TIME,{begin},0,{end},{number(way)})" for begin, end, way in ways) or "0"
-    name, label = f"mot_{part.name}", f"{'Turn' if moving.turns else 'Way'} of {part.name}"
-    freedom = "R" if moving.turns else "T"
-    deck.motions.append(Motion(name, label, len(deck.motions) + 1, law, joint, "D", freedom))
 
 
 def add_slide(deck: Deck, part: RollerPart | PlanePart, press: Press, place: Floats, body: int) -> None:

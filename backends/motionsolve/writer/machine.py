@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from mdlgen.backends.motionsolve.writer.axes import cosines
 from mdlgen.backends.motionsolve.writer.ids import body_id
+from mdlgen.backends.motionsolve.writer.moving import add_stops
 from mdlgen.backends.motionsolve.writer.parts.kinds import written
 from mdlgen.backends.motionsolve.writer.rows import Deck
 from mdlgen.backends.motionsolve.writer.units import numbers, triples
@@ -23,6 +24,7 @@ def add_machine(deck: Deck, model: Model) -> None:
         kind.add_shell(deck, model, part)
     for kind, part in written(model):
         kind.add_joints(deck, model, part)
+    add_stops(deck, model)
 
 
 def _add_facets(deck: Deck, model: Model) -> None:

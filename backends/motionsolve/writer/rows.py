@@ -122,7 +122,8 @@ class Load(NamedTuple):
 
 
 class Clutch(NamedTuple):
-    """A torque on a roller at a marker, about the z axis of another one, which lies along its axle."""
+    """A torque on a body at a marker, about the z axis of another one, which lies along its joint; or a force
+    along that."""
 
     name: str
     label: str
@@ -130,6 +131,7 @@ class Clutch(NamedTuple):
     marker: int
     along: int
     torque: str
+    force: str = "0"
 
 
 class Solid(NamedTuple):

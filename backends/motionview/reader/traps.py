@@ -47,8 +47,10 @@ def _bushing(bush: Thing, notes: Notes) -> None:
         return
     k, c, kt, ct = ([v for v in numbers[g] if isinstance(v, float)] for g in GROUPS)
     negative = min((*k, *c, *kt, *ct), default=0.0) < 0
-    damped_only = len(kt) == 3 and not any(kt) and any(ct)
-    slack = len(k) == len(kt) == 3 and not any(k) and not any(kt)
+    dashpot = sum(v != 0.0 for v in (*c, *ct)) == 1  # one damper along or about one axis
+    damped_only = len(kt) == 3 and not any(kt) and any(ct) and not dashpot
+    preload = [*(numbers["force"] or ()), *(numbers["torque"] or ())]
+    slack = len(k) == len(kt) == 3 and not any((*k, *kt, *preload)) and not dashpot
     if not (negative or damped_only or slack):
         return
     chosen = bush.chosen("setbush", bush.part)

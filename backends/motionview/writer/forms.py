@@ -9,6 +9,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import NamedTuple
 
+from mdlgen.backends.motionview.writer.moving import StopsView
 from mdlgen.backends.motionview.writer.scene_rows import SceneView, SystemView
 
 MOTIONVIEW = "2021.help.altair.com/2021/hwdesktop/hwd/topics/reference/mv/"
@@ -42,7 +43,13 @@ def _joined(scene: SceneView) -> bool:
 
 
 def _sprung(scene: SceneView) -> bool:
-    return any(r.arm and r.arm.sprung for r in scene.rollers)
+    moved = any(part.moving and part.moving.sprung for part in scene.moved)
+    return moved or any(r.arm and r.arm.sprung for r in scene.rollers)
+
+
+def _stopped(scene: SceneView) -> list[StopsView]:
+    own = [part.stops for part in (*scene.rollers, *scene.planes) if part.stops]
+    return own + [part.moving.stops for part in scene.moved if part.moving and part.moving.stops]
 
 
 def _pressed(scene: SceneView) -> bool:
@@ -87,13 +94,14 @@ UNVERIFIED = (
     ),
     Unverified(
         "a line of more than 528 characters, the longest that was seen",
-        "speeds and motions with many corners, clutches, motors, limiters, and loads over time; no page has "
-        "a limit",
+        "speeds and motions with many corners, clutches, motors, limiters, stops, and loads over time; no "
+        "page has a limit",
         "the end of the line in the panel of a motion or a force",
         lambda scene: (
             any(r.corners > _LONG or r.free_sense or r.axle for r in scene.rollers)
             or any(load.changes for load in scene.loads)
             or any(part.moving and part.moving.corners > _LONG for part in scene.moved)
+            or bool(_stopped(scene))
         ),
     ),
     Unverified(
@@ -144,7 +152,7 @@ DOCUMENTED = (
         lambda scene: bool(scene.supports) or _sprung(scene),
     ),
     Documented(
-        "preload torques of `*SetBush`, which act at marker i, on the first body",
+        "preloads of `*SetBush`, which act at marker i, on the first body",
         ("setbush_single_bushing_r.htm", "bush_r.htm", f"{MOTIONSOLVE}xml-format_8.htm"),
         _pushed,
     ),
@@ -192,7 +200,7 @@ DOCUMENTED = (
         "`*ActionOnlyForce( .., TRANS, .. )`, `*SetForce` with `LIN` three times (seen with `ROT`, and with "
         "two `LIN` and an `EXPR`); components are along the reference marker",
         ("actiononlyforce_r.htm", "setforce_translational_r.htm"),
-        lambda scene: bool(scene.loads),
+        lambda scene: bool(scene.loads) or any(not own.turns for own in _stopped(scene)),
     ),
     Documented(
         "`ds_gravity` and `ds_units` in `*BeginContext( model.sys_misc )`; another page has `DS_Gravity` at "

@@ -14,7 +14,7 @@ from mdlgen.errors import Place, SpecError
 
 TABLES = (
     *("NAME", "GRAVITY", "RUN", "CURVES", "SHEETS", "LISTED", *(of.variable for of in MACHINE)),
-    *("SPINS", "MOVES", "SUPPORTS", "LOADS", "FACTORS", "PROBES", "CONTACTS", "FORCES"),
+    *("SPINS", "MOVES", "STOPS", "SUPPORTS", "LOADS", "FACTORS", "PROBES", "CONTACTS", "FORCES"),
 )
 _ALWAYS = ("NAME", "GRAVITY", "RUN")
 _HEAD = "import csv\nfrom msolve import *\n"

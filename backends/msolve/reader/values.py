@@ -17,7 +17,7 @@ from mdlgen.backends.msolve.reader.shapes.kinds import SHAPES
 from mdlgen.backends.msolve.reader.standin import Thing
 from mdlgen.errors import Place, SpecError
 
-_IDS = re.compile(r"\b([DVW][XYZ])\(([0-9]{1,10}(?:,[0-9]{1,10})*)\)")
+_IDS = re.compile(r"\b([DVW][XYZ]|AZ)\(([0-9]{1,10}(?:,[0-9]{1,10})*)\)")
 _CURVED = re.compile(r"-LINSPL\((.*),0,([0-9]{1,10})\)")
 _CONTACT = re.compile(r"CONTACT\(([0-9]{1,10}),([01]),([1-8]),([0-9]{1,10})\)")
 _SIX = ("f2", "f3", "f4", "f6", "f7", "f8")
@@ -228,10 +228,10 @@ def _forces(objects: Objects, found: dict[str, Any]) -> None:
     for name, force in objects.of("Gforce"):
         given = force.given
         three = [tuple(given.get(f"{kind}{a}", "0") for a in "xyz") for kind in "ft"]
-        if name.endswith(("_clutch", "_axle")):
-            torque = [_named(objects, text) for text in three[1]]
+        if name.endswith(("_clutch", "_axle", "_stops")):
+            push, torque = ([_named(objects, text) for text in own] for own in three)
             ends = (on(force.i), label(force.i), label(force.rm))
-            objects.put(found["clutches"], name, {"ends": ends, "force": three[0], "torque": torque})
+            objects.put(found["clutches"], name, {"ends": ends, "force": tuple(push), "torque": torque})
             continue
         load = {
             "label": name,

@@ -19,7 +19,7 @@ from mdlgen.altair.streams import refuse_passing
 from mdlgen.backends.msolve.environment import environment
 from mdlgen.backends.msolve.writer import contacts, gate, sheets
 from mdlgen.backends.msolve.writer.banner import banner
-from mdlgen.backends.msolve.writer.bodies import moves, spins
+from mdlgen.backends.msolve.writer.bodies import moves, spins, stops
 from mdlgen.backends.msolve.writer.parts.kinds import MACHINE, WRITTEN
 from mdlgen.backends.msolve.writer.units import acceleration, per_thousand, row
 from mdlgen.errors import SpecError
@@ -73,6 +73,7 @@ def tables(model: Model) -> dict[str, Any]:
         },
         "SPINS": spins(model),
         "MOVES": moves(model),
+        "STOPS": stops(model),
         "SUPPORTS": sheets.supports(model),
         "LOADS": sheets.loads(model),
         "FACTORS": sheets.load_factors(model),

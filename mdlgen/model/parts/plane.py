@@ -13,7 +13,7 @@ from mdlgen.geometry.solids import BOX, CORNERS, Solid
 from mdlgen.model.frames import frame
 from mdlgen.model.moved import carries, lower_motion, moves, swept, watched
 from mdlgen.model.parameters.machine import center_rows, spring_rows, start_row
-from mdlgen.model.parameters.moving import moving_rows
+from mdlgen.model.parameters.moving import moving_rows, stops_rows
 from mdlgen.model.parameters.names import NAMED_AXES
 from mdlgen.model.parts.kind import SLACK, BodyRow, Boxes, Drawn, Kind
 from mdlgen.model.parts.words import begins, direction
@@ -155,6 +155,7 @@ class _Planes(Kind[PlanePart]):
         if plane.press is None:
             return rows
         rows += spring_rows(name, plane.press, base)
+        rows += stops_rows(name, plane.press.stops, (*base, "press", "stops"))
         if plane.press.carrier_mass is not None:
             path = (*base, "press", "carrier_mass")
             rows.append(Parameter(name, "M_c", "Mass of its slide", plane.press.carrier_mass, "g", path))

@@ -14,6 +14,7 @@ from mdlgen.model.frames import frame
 from mdlgen.model.moved import lower_stops
 from mdlgen.model.parameters.axles import axle_rows, drive_rows, ratio_rows
 from mdlgen.model.parameters.machine import center_rows, spring_rows, start_row
+from mdlgen.model.parameters.moving import stops_rows
 from mdlgen.model.parameters.names import NAMED_AXES
 from mdlgen.model.parts.kind import SLACK, BodyRow, Boxes, Drawn, Kind
 from mdlgen.model.parts.words import begins, direction
@@ -202,6 +203,7 @@ class _Rollers(Kind[RollerPart]):
             touch, start = starts[name]
             rows += [
                 *spring_rows(name, roller.press, base),
+                *stops_rows(name, roller.press.stops, (*base, "press", "stops")),
                 Parameter(
                     name,
                     "M_c",
@@ -371,7 +373,7 @@ def _arm_rows(scene: Scene, name: str) -> list[Parameter]:
                 name, "c_a", "Its damping (N mm s/rad)", arm.damping, "N*mm*ms/rad", (*path, "damping")
             ),
         ]
-    return rows
+    return rows + stops_rows(name, arm.stops, (*path, "stops"))
 
 
 KIND = _Rollers()

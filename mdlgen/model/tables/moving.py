@@ -44,6 +44,11 @@ class MovingPart(Frozen):
         return self.inertia > 0.0
 
     @property
+    def sprung(self) -> bool:
+        """Whether a spring or a damper acts on it."""
+        return self.stiffness != 0.0 or self.damping != 0.0 or self.force != 0.0
+
+    @property
     def ends(self) -> tuple[float, float]:
         """The least and the greatest place that it may have; of one that turns freely without stops a whole
         turn either way."""

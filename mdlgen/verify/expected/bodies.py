@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from mdlgen.altair.axles import with_rotors
+from mdlgen.altair.masses import masses
 from mdlgen.model.tables import Model
 from mdlgen.verify.expected.parts.kinds import kind_of
 from mdlgen.verify.expected.points import boxes_of
@@ -16,9 +16,10 @@ def bodies(model: Model) -> Table:
     bodies = model.bodies
     more = [body for part in model.machine for body in kind_of(part).bodies(model, part)]
     names = [f"b_{n}" for n in bodies.name] + [body.name for body in more]
-    mass = np.concatenate([bodies.mass, [body.mass for body in more]]) * KG
-    inertia = np.array([*with_rotors(model), *(body.inertia for body in more)]) * KG
-    position = np.array([*bodies.position, *(body.place for body in more)])
+    own = masses(model)
+    mass = np.concatenate([own.mass, [body.mass for body in more]]) * KG
+    inertia = np.array([*own.inertia, *(body.inertia for body in more)]) * KG
+    position = np.array([*own.place, *(body.place for body in more)])
     axes = np.array([*bodies.rotation.transpose(0, 2, 1), *(np.eye(3) for _ in more)])
     products = np.zeros_like(inertia)
     parts: dict[str, Part] = {

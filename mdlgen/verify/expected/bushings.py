@@ -22,7 +22,11 @@ def bushings(model: Model) -> Table:
     bent = np.flatnonzero(model.curves.of >= 0)
     stiff[bent, model.curves.axis[bent]] = 0.0  # a curve stands there: see curve_laws
     arms = [bushing for part in model.machine for bushing in kind_of(part).bushings(model, part)]
-    last, none = np.eye(3)[2], np.zeros((len(arms), 3))
+    last = np.eye(3)[2]
+
+    def about(turns: bool, name: str) -> list[Floats]:
+        """A value of each spring about z, or along it, as a vector."""
+        return [getattr(arm, name) * last * (arm.turns == turns) for arm in arms]
 
     def both(own: Floats, more: list[Floats]) -> Floats:
         return np.concatenate([own, np.array(more).reshape(-1, *own.shape[1:])])
@@ -30,13 +34,13 @@ def bushings(model: Model) -> Table:
     parts: dict[str, Part] = {
         "origin": (both(rows.origin, [arm.origin for arm in arms]), reach(model)),
         "axes": (both(rows.axes, [arm.rotation for arm in arms]).transpose(0, 2, 1), 1.0),
-        "k": (both(stiff, [*none]), None),
-        "c": (both(rows.c[:, :3], [*none]) * SECOND, None),
-        "kt": (both(rows.k[:, 3:], [arm.stiffness * last for arm in arms]), None),
-        "ct": (both(rows.c[:, 3:], [arm.damping * last for arm in arms]) * SECOND, None),
-        "force": (np.zeros((len(rows) + len(arms), 3)), 1.0),
+        "k": (both(stiff, about(False, "stiffness")), None),
+        "c": (both(rows.c[:, :3], about(False, "damping")) * SECOND, None),
+        "kt": (both(rows.k[:, 3:], about(True, "stiffness")), None),
+        "ct": (both(rows.c[:, 3:], about(True, "damping")) * SECOND, None),
+        "force": (both(np.zeros((len(rows), 3)), about(False, "torque")), 1.0),
         # on the first body, which the second one is to turn away from
-        "torque": (both(-rows.k[:, 3:] * rows.rest, [arm.torque * last for arm in arms]), 1.0),
+        "torque": (both(-rows.k[:, 3:] * rows.rest, about(True, "torque")), 1.0),
     }
     words = [
         (body_name(model, a), body_name(model, b))

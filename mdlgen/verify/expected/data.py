@@ -21,7 +21,7 @@ FACTORS = {
     "g": KG,
     "g/mm^3": KG,
     "g*mm^2": KG,
-    "N*mm*ms/rad": SECOND,
+    **dict.fromkeys(("N*mm*ms/rad", "N*ms/mm"), SECOND),
     "ms": SECOND,
     "1/ms": 1 / SECOND,
     "mm/ms": 1 / SECOND,

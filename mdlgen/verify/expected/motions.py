@@ -10,6 +10,7 @@ from mdlgen.model.tables import (
     Model,
 )
 from mdlgen.verify.expected.axles import axle_stations
+from mdlgen.verify.expected.stops import stop_stations
 from mdlgen.verify.expected.times import Times, longest
 from mdlgen.verify.expected.units import SECOND
 from mdlgen.verify.tables import Table, table
@@ -37,7 +38,7 @@ def stations(model: Model) -> Times:
         found[OF_LOADS] = _profile_stations(np.unique(np.concatenate(changing)) * SECOND)
     most = longest(found)  # a table has as many columns for all
     found = {name: (*times, *[times[-1]] * (most - len(times))) for name, times in found.items()}
-    return {**found, **axle_stations(model, found)}
+    return {**found, **axle_stations(model, found), **stop_stations(model)}
 
 
 def _profile_stations(corners: Floats) -> tuple[float, ...]:

@@ -20,6 +20,7 @@ from mdlgen.verify.expected.markers import markers, outputs, vectors
 from mdlgen.verify.expected.motions import motions
 from mdlgen.verify.expected.parts.kinds import own_tables
 from mdlgen.verify.expected.points import points
+from mdlgen.verify.expected.stops import stops
 from mdlgen.verify.expected.times import Times
 from mdlgen.verify.tables import Table
 
@@ -39,6 +40,7 @@ def expected(model: Model, times: Times) -> dict[str, Table]:
         "motions": motions(model, times),
         "clutches": clutches(model, times),
         "axles": axles(model, times),
+        "stops": stops(model, times),
         "velocities": velocities(model),
         "markers": markers(model),
         "vectors": vectors(model),

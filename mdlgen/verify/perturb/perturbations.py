@@ -52,7 +52,7 @@ def perturbations(scene: Scene, model: Model) -> Iterator[Perturbation]:
     sheets = {s.name for s in model.sheets}
     for p in model.parameters:
         value = p.value * FAR.get(p.unit, STEP) if p.value else FROM_ZERO.get(p.unit, 0.5)
-        if p.path is not None and p.path[-1:] == (0,) and set(RISING) & set(p.path):
+        if p.path is not None and _rises(p.path):
             value = _later(scene, p.path, value)
         if p.path is not None and "sectors" in p.path and p.unit == "rad":
             value = _wider(scene, p)
@@ -110,6 +110,11 @@ def _moved(scene: Scene, base: Model, name: str, value: float) -> Callable[[], M
         return as_written(changed, base, scene)
 
     return model
+
+
+def _rises(path: Path) -> bool:
+    """Whether it is the first number of a row of a list whose rows rise with it."""
+    return len(path) > 3 and path[-1] == 0 and isinstance(path[-2], int) and path[-3] in RISING
 
 
 def _later(scene: Scene, path: Path, value: float) -> float:

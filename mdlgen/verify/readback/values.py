@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
 from typing import Any
 
@@ -14,18 +14,18 @@ from mdlgen.verify.expected.clutches import SPINS, clutch_times
 from mdlgen.verify.expected.contacts import CONTACT_NUMBERS, SIX
 from mdlgen.verify.expected.loads import load_times
 from mdlgen.verify.expected.run import RUN_NUMBERS
-from mdlgen.verify.expected.times import OF_AXLES, longest
+from mdlgen.verify.expected.times import OF_AXLES, OF_STOPS, longest
 from mdlgen.verify.readback.graphics import graphic_tables, surface_table
 from mdlgen.verify.readback.rows import Row, flat, table_of
-from mdlgen.verify.solver_expressions import Places, Unreadable, law, request, torques
+from mdlgen.verify.solver_expressions import Places, Unreadable, law, of_joint, request, torques
 from mdlgen.verify.tables import Table
 
 Values = Mapping[str, Mapping[str, Any]]
 
 _NAN = float("nan")
 _LOAD = re.compile(r"frc_\d+")
-_CLUTCH, _AXLE = re.compile(r"frc_(\w+)_clutch"), re.compile(r"frc_(\w+)_axle")
-_SPIN = re.compile(r"WZ\(([^()]*)\)")
+_CLUTCH, _AXLE, _STOPS = (re.compile(rf"frc_(\w+)_{word}") for word in ("clutch", "axle", "stops"))
+_MEASURED = re.compile(r"(?:[DV]|[AW])Z\(([^()]*)\)")
 _CONTACT = re.compile(r"^\s*CONTACT\(|\)\s*$|\s")
 _MARKER = re.compile(r"[A-Za-z_][\w.]*(?=\s*[,)])")
 _CONTACT_ATTRIBUTES = {
@@ -84,7 +84,8 @@ class ReadBack:
             "clutches": table_of(
                 _spun(values, _CLUTCH), self._clutch, 3 + len(clutch_times(self.stations, "")) * len(SPINS)
             ),
-            "axles": table_of(_spun(values, _AXLE), self._axle, 3 + len(self._points("")) // 2),
+            "axles": table_of(_spun(values, _AXLE), self._axle, 3 + len(self._points(OF_AXLES, "")) // 2),
+            "stops": table_of(_spun(values, _STOPS), self._stop, 3 + len(self._points(OF_STOPS, "")) // 2),
             "velocities": table_of(values.get("velocities", {}), lambda n, r: (list(r), ()), 6),
             "markers": table_of(
                 {n: r for n, r in values.get("markers", {}).items() if "." not in n}, _marker, 12
@@ -118,34 +119,39 @@ class ReadBack:
             return _NAN
 
     def _clutch(self, name: str, record: Mapping[str, Any]) -> Row:
-        form = _CLUTCH.fullmatch(name)
-        assert form is not None, "only such names are asked for"
-        return self._torques(record, [(t, w) for t in clutch_times(self.stations, form[1]) for w in SPINS])
+        times = clutch_times(self.stations, _part(_CLUTCH, name))
+        points = [(t, w) for t in times for w in SPINS]
+        *idle, about = record["components"]
+        return self._over(record, about, lambda: torques(about, points), idle)
 
     def _axle(self, name: str, record: Mapping[str, Any]) -> Row:
-        form = _AXLE.fullmatch(name)
-        assert form is not None, "only such names are asked for"
-        points = self._points(form[1])
-        return self._torques(record, list(zip(points[::2], points[1::2], strict=True)))
-
-    def _points(self, roller: str) -> tuple[float, ...]:
-        """Times and spins of a roller's axle, one after the other; of one that nobody knows those of another
-        one."""
-        own = [points for name, points in self.stations.items() if name.startswith(OF_AXLES)]
-        return self.stations.get(f"{OF_AXLES}{roller}", own[0] if own else ())
-
-    def _torques(self, record: Mapping[str, Any], points: Sequence[tuple[float, float]]) -> Row:
-        """Axis of a torque, and its values at times [s] and spins [rad/s]; what it is on and follows from."""
+        points = self._points(OF_AXLES, _part(_AXLE, name))
         *idle, about = record["components"]
+        return self._over(record, about, lambda: torques(about, _pairs(points)), idle)
+
+    def _stop(self, name: str, record: Mapping[str, Any]) -> Row:
+        points, six = self._points(OF_STOPS, _part(_STOPS, name)), list(record["components"])
+        turns = six[2] == "0"
+        acts = six.pop(5 if turns else 2)
+        words = ["torque" if turns else "force"] if six == ["0"] * 5 else six
+        return self._over(record, acts, lambda: of_joint(acts, _pairs(points)), words)
+
+    def _points(self, kind: str, part: str) -> tuple[float, ...]:
+        """Pairs of numbers of a part, one after the other; of one that nobody knows those of another one."""
+        own = [points for name, points in self.stations.items() if name.startswith(kind)]
+        return self.stations.get(f"{kind}{part}", own[0] if own else ())
+
+    def _over(
+        self, record: Mapping[str, Any], text: str, values: Callable[[], list[float]], words: Sequence[str]
+    ) -> Row:
+        """Axis of a force over a joint, and its values; what it is on and follows from, and other words."""
         # a marker of a joint is called joint_i in texts and decks, i in scripts
-        calls = {re.sub(r"\s|joint_", "", call) for call in _SPIN.findall(about)}
-        said = (record["body"], *sorted(calls), *idle)
+        calls = {re.sub(r"\s|joint_", "", call) for call in _MEASURED.findall(text)}
+        said = (record["body"], *sorted(calls), *words)
         try:
-            axis = self.places[record["reference"]].axes[2].tolist()
-            laws = torques(about, points)
+            return [*self.places[record["reference"]].axes[2].tolist(), *values()], said
         except Unreadable:
             return [], said
-        return [*axis, *laws], said
 
     def _load(self, name: str, record: Mapping[str, Any]) -> Row:
         """Place of a load, its forces at all times of loads, and its moments."""
@@ -224,6 +230,14 @@ def _spun(values: Values, named: re.Pattern[str]) -> dict[str, dict[str, Any]]:
             components = (*record["force"], *record["torque"])
             found[name] = record | {"components": [_text(v) for v in components]}
     return found
+
+
+def _part(named: re.Pattern[str], name: str) -> str:
+    return named.sub(r"\1", name)
+
+
+def _pairs(numbers: Sequence[float]) -> list[tuple[float, float]]:
+    return list(zip(numbers[::2], numbers[1::2], strict=True))
 
 
 def _text(component: Any) -> str:

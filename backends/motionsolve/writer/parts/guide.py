@@ -5,7 +5,7 @@ from __future__ import annotations
 from mdlgen.backends.motionsolve.writer.axes import cosines
 from mdlgen.backends.motionsolve.writer.facets import Shown
 from mdlgen.backends.motionsolve.writer.ids import GROUND_ID
-from mdlgen.backends.motionsolve.writer.joints import add_gate
+from mdlgen.backends.motionsolve.writer.moving import add_gate
 from mdlgen.backends.motionsolve.writer.parts.kind import Kind
 from mdlgen.backends.motionsolve.writer.rows import Deck
 from mdlgen.backends.motionsolve.writer.units import triples
@@ -30,7 +30,7 @@ class _Guides(Kind[GuidePart]):
         return made
 
     def add_joints(self, deck: Deck, model: Model, part: GuidePart) -> None:
-        add_gate(deck, part, part.center)
+        add_gate(deck, model, part, part.center)
 
 
 KIND = _Guides()

@@ -4,7 +4,8 @@ from __future__ import annotations
 
 from mdlgen.backends.motionsolve.writer.axes import cosines
 from mdlgen.backends.motionsolve.writer.ids import GROUND_ID, body_id, graphic_id
-from mdlgen.backends.motionsolve.writer.joints import add_gate, fix
+from mdlgen.backends.motionsolve.writer.joints import fix
+from mdlgen.backends.motionsolve.writer.moving import add_gate
 from mdlgen.backends.motionsolve.writer.parts.kind import Kind
 from mdlgen.backends.motionsolve.writer.rows import Deck, Shell
 from mdlgen.backends.motionsolve.writer.units import triples
@@ -36,7 +37,7 @@ class _Meshes(Kind[MeshPart]):
             fix(deck, f"j_{part.name}", f"{label} fixed", body_id(part.body), middle, on)
 
     def add_joints(self, deck: Deck, model: Model, part: MeshPart) -> None:
-        add_gate(deck, part, model.bodies.position[part.body])
+        add_gate(deck, model, part, model.bodies.position[part.body])
 
 
 def _under(model: Model, mesh: MeshPart) -> int:

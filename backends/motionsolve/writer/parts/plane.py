@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 from mdlgen.backends.motionsolve.writer.ids import body_id
-from mdlgen.backends.motionsolve.writer.joints import add_gate, add_slide
+from mdlgen.backends.motionsolve.writer.joints import add_slide
+from mdlgen.backends.motionsolve.writer.moving import add_gate
 from mdlgen.backends.motionsolve.writer.parts.kind import Kind
 from mdlgen.backends.motionsolve.writer.requests import add_request
 from mdlgen.backends.motionsolve.writer.rows import Deck
@@ -15,7 +16,7 @@ class _Planes(Kind[PlanePart]):
 
     def add_joints(self, deck: Deck, model: Model, part: PlanePart) -> None:
         """A pressed plane is the body of its slide itself."""
-        add_gate(deck, part, model.bodies.position[part.body])
+        add_gate(deck, model, part, model.bodies.position[part.body])
         if part.press is None:
             return
         add_slide(deck, part, part.press, model.bodies.position[part.body], body_id(part.body))

@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from mdlgen.backends.motionview.writer.axes import axis_of, zx_vector
-from mdlgen.backends.motionview.writer.moving import MovingView, moving_view
+from mdlgen.backends.motionview.writer.moving import MovingView, moving_derived, moving_view
 from mdlgen.backends.motionview.writer.parts.kind import Kind, PartView
 from mdlgen.backends.motionview.writer.rows import Axis, Value
 from mdlgen.model.tables import GuidePart, Model
@@ -28,7 +28,8 @@ class GuideView(PartView):
 class _Guides(Kind[GuidePart]):
     def view(self, model: Model, part: GuidePart, given: list[Value]) -> GuideView:
         """One guide; the number of its boxes is fixed in a text."""
-        straight = part.radius == 0.0
+        straight, members = part.radius == 0.0, {value.member for value in given}
+        moving = moving_view(part.name, part.moving, f"p_{part.name}", members, "$M")
         if straight:
             way = "($x_1-$x_0)^2+($y_1-$y_0)^2+($z_1-$z_0)^2"
             derived = [("L", "Length (mm)", f"sqrt({way})")]
@@ -40,10 +41,11 @@ class _Guides(Kind[GuidePart]):
                 ("R_o", "Greater radius of the plate (mm)", f"$R{beyond}"),
                 ("chord", "Length of a box (mm)", "2*$R_o*tan($turn/2)"),
             ]
+        derived += moving_derived(members)
         return GuideView(
             name=part.name,
             given=given,
-            moving=moving_view(part.name, part.moving),
+            moving=moving,
             derived=derived,
             straight=straight,
             axis=axis_of(f"v_{part.name}_axis", part.axes[:, 2]),

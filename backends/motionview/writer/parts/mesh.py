@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from mdlgen.backends.motionview.writer.axes import components
-from mdlgen.backends.motionview.writer.moving import MovingView, moving_view
+from mdlgen.backends.motionview.writer.moving import MovingView, moving_derived, moving_view
 from mdlgen.backends.motionview.writer.parts.kind import Kind, PartView
 from mdlgen.backends.motionview.writer.rows import Value
 from mdlgen.backends.motionview.writer.units import number
@@ -41,10 +41,12 @@ class _Meshes(Kind[MeshPart]):
         if part.density is not None:
             derived.append(("V", "Volume (mm3)", number(part.volume)))
             mass = "$rho*$V"
+        members = {value.member for value in given}
+        derived += moving_derived(members)
         return MeshView(
             name=part.name,
             given=given,
-            moving=moving_view(part.name, part.moving),
+            moving=moving_view(part.name, part.moving, f"p_{part.name}_cm", members, mass),
             derived=derived,
             mass=mass,
             file=part.file,

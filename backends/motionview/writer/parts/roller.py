@@ -9,6 +9,7 @@ import numpy as np
 
 from mdlgen.altair.rims import DEEP, WHOLE, graphics
 from mdlgen.backends.motionview.writer.axes import axis_of, components, zx_vector
+from mdlgen.backends.motionview.writer.moving import StopsView, across, stops_derived, stops_view
 from mdlgen.backends.motionview.writer.parts.kind import Kind, PartView
 from mdlgen.backends.motionview.writer.rows import Axis, Value
 from mdlgen.backends.motionview.writer.units import number
@@ -60,6 +61,7 @@ class RollerView(PartView):
     press: tuple[str, str, str]
     arm: ArmView | None
     axle: AxleView | None
+    stops: StopsView | None  # of its press, or its arm
     rim: list[SectorView]
     derived: list[tuple[str, str, str]]
 
@@ -76,6 +78,7 @@ class _Rollers(Kind[RollerPart]):
             arm = ArmView((x, y, z), part.arm.sprung)
             if "I_a" not in members:
                 derived = [("I_a", "Inertia of the arm, a rod (kg mm2)", _rod(axis.vector)), *derived]
+        derived = [*stops_derived(members, _stopped(part, axis.vector, arm)), *derived]
         axle = None
         if part.axle is not None:
             own, derived = part.axle, [*_motor(members, part.axle), *derived]
@@ -96,6 +99,7 @@ class _Rollers(Kind[RollerPart]):
             press=components(press.direction if press is not None else np.zeros(3)),
             arm=arm,
             axle=axle,
+            stops=_stops(part),
             rim=rim,
             derived=derived,
         )
@@ -117,6 +121,23 @@ def _rod(axis: str) -> str:
     along = "+".join(f"(${a}-$a_{a})*{axis}.{a}" for a in "xyz")
     square = "+".join(f"(${a}-$a_{a})^2" for a in "xyz")
     return f"$M_a*({square}-({along})^2)/12"
+
+
+def _stops(part: RollerPart) -> StopsView | None:
+    name = part.name
+    if part.press is not None and part.press.stops is not None:
+        return stops_view(name, f"j_{name}_slide", False, f"b_{name}_carrier", f"p_{name}", "$start")
+    if part.arm is not None and part.arm.stops is not None:
+        return stops_view(name, f"j_{name}_pivot", True, f"b_{name}_arm", f"p_{name}_pivot")
+    return None
+
+
+def _stopped(part: RollerPart, axis: str, arm: ArmView | None) -> str:
+    """Mass of all that slides with a press, or inertia of all that turns with an arm."""
+    if arm is None:
+        return "$M+$M_c"
+    turned = "+$M*$R^2/2" if part.speed is not None else ""
+    return f"$I_a+$M_a*{across(arm.center, axis)}+$M*{across(('$x', '$y', '$z'), axis)}{turned}"
 
 
 def _motor(members: set[str], axle: AxlePart) -> list[tuple[str, str, str]]:

@@ -12,19 +12,22 @@ from mdlgen.model.parts.guide import facets, outer
 from mdlgen.model.tables import Floats, GuidePart, Model
 from mdlgen.verify.expected.parts.kind import (
     Box,
+    Bushing,
     Joint,
     Kind,
     Marker,
     gate_joint,
-    gate_pivot,
+    gate_points,
+    gate_spring,
     gate_way,
     own_vector,
+    stops_data,
 )
 
 
 class _Guides(Kind[GuidePart]):
     def points(self, model: Model, part: GuidePart) -> Iterator[tuple[str, Floats]]:
-        yield from gate_pivot(part.name, part.moving)
+        yield from gate_points(model, part.body, part.name, part.moving)
         yield f"p_{part.name}", part.center
         for box in self.boxes(model, part):
             yield f"p_{box.name.removeprefix('gbox_')}", box.center
@@ -39,6 +42,9 @@ class _Guides(Kind[GuidePart]):
     def markers(self, model: Model, part: GuidePart) -> Iterator[Marker]:
         yield Marker(f"m_{part.name}", "B_Ground", part.center, part.axes)
 
+    def bushings(self, model: Model, part: GuidePart) -> Iterator[Bushing]:
+        yield from gate_spring(part.name, part.moving, part.center)
+
     def vectors(self, model: Model, part: GuidePart) -> Iterator[tuple[str, Floats]]:
         yield from gate_way(part.name, part.moving)
         yield from own_vector(f"v_{part.name}_axis", part.axes[:, 2])
@@ -49,10 +55,16 @@ class _Guides(Kind[GuidePart]):
 
     def data(self, model: Model, part: GuidePart) -> dict[str, float]:
         if part.radius == 0.0:
-            return {"L": part.length}
+            return {"L": part.length, **stops_data(model, part.name)}
         turn = 2 * part.half_angle / part.facets
         chord = 2 * outer(part) * math.tan(turn / 2)
-        return {"n": float(part.facets), "turn": turn, "R_o": outer(part), "chord": chord}
+        return {
+            "n": float(part.facets),
+            "turn": turn,
+            "R_o": outer(part),
+            "chord": chord,
+            **stops_data(model, part.name),
+        }
 
     def graphics(self, part: GuidePart, side: Side) -> list[str]:
         return [f"gbox_{part.name}_{k}" for k in range(part.facets)]

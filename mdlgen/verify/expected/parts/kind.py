@@ -11,9 +11,13 @@ from typing import Generic, NamedTuple, TypeVar
 
 import numpy as np
 
-from mdlgen.altair.moving import joint_of
+from mdlgen.altair.masses import masses
+from mdlgen.altair.moving import joint_of, spring_axes
 from mdlgen.altair.rims import Side
+from mdlgen.altair.stops import stopped
+from mdlgen.mechanics.gate import BLUNT
 from mdlgen.model.tables import Floats, MachinePart, Model, MovingPart, Press
+from mdlgen.verify.expected.units import SECOND
 from mdlgen.verify.tables import Table
 
 P = TypeVar("P", bound=MachinePart)
@@ -69,7 +73,7 @@ class Spring(NamedTuple):
 
 
 class Bushing(NamedTuple):
-    """A torsional spring about z between a body and ground."""
+    """A spring about z, or along it, between a body and ground."""
 
     name: str
     body: str
@@ -78,6 +82,7 @@ class Bushing(NamedTuple):
     stiffness: float  # [N mm/rad]
     damping: float  # [N mm ms/rad]
     torque: float  # [N mm]
+    turns: bool = True  # else along z: [N/mm], [N ms/mm] and [N]
 
 
 class Kind(Generic[P]):
@@ -151,9 +156,32 @@ def gate_joint(name: str, moving: MovingPart | None, place: Floats) -> Iterable[
     return (Joint(f"j_{name}_{word}", type, f"b_{name}", "B_Ground", at, moving.axis),)
 
 
-def gate_pivot(name: str, moving: MovingPart | None) -> Iterable[tuple[str, Floats]]:
-    """The point that a part turns about."""
-    return () if moving is None or not moving.turns else ((f"p_{name}_pivot", moving.pivot),)
+def gate_points(
+    model: Model, body: int, name: str, moving: MovingPart | None
+) -> Iterable[tuple[str, Floats]]:
+    """The point that a part turns about, and where its mass is if it does so freely."""
+    if moving is None or not moving.turns:
+        return ()
+    pivot = (f"p_{name}_pivot", moving.pivot)
+    return (pivot, (f"p_{name}_mass", masses(model).place[body])) if moving.free else (pivot,)
+
+
+def gate_spring(name: str, moving: MovingPart | None, place: Floats) -> Iterable[Bushing]:
+    """The spring of a part that moves freely."""
+    if moving is None or not moving.sprung:
+        return ()
+    axes = spring_axes(moving)
+    law = (moving.stiffness, moving.damping, moving.force)
+    at = moving.pivot if moving.turns else place
+    return (Bushing(f"bsh_{name}_gate", f"b_{name}", at, axes, *law, moving.turns),)
+
+
+def stops_data(model: Model, name: str) -> dict[str, float]:
+    """What a text computes of the stops of a part."""
+    for one in stopped(model, BLUNT):
+        if one.name == name:
+            return {"b_e": one.share, "o_e": one.blunt / SECOND}
+    return {}
 
 
 def gate_way(name: str, moving: MovingPart | None) -> Iterable[tuple[str, Floats]]:

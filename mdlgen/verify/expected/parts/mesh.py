@@ -11,13 +11,16 @@ from mdlgen.model.meshes import origin
 from mdlgen.model.tables import Floats, Ints, MeshPart, Model
 from mdlgen.spec.solid import moments
 from mdlgen.verify.expected.parts.kind import (
+    Bushing,
     Joint,
     Kind,
     Marker,
     axis_vectors,
     gate_joint,
-    gate_pivot,
+    gate_points,
+    gate_spring,
     gate_way,
+    stops_data,
 )
 from mdlgen.verify.expected.units import reach
 from mdlgen.verify.tables import Part, Table, table
@@ -25,9 +28,10 @@ from mdlgen.verify.tables import Part, Table, table
 
 class _Meshes(Kind[MeshPart]):
     def points(self, model: Model, part: MeshPart) -> Iterator[tuple[str, Floats]]:
-        yield from gate_pivot(part.name, part.moving)
+        yield from gate_points(model, part.body, part.name, part.moving)
         yield f"p_{part.name}", origin(part, model.rollers)
-        yield f"p_{part.name}_cm", model.bodies.position[part.body]
+        if part.moving is None or not (part.moving.free and part.moving.turns):
+            yield f"p_{part.name}_cm", model.bodies.position[part.body]
 
     def joints(self, model: Model, part: MeshPart) -> Iterator[Joint]:
         yield from gate_joint(part.name, part.moving, model.bodies.position[part.body])
@@ -38,13 +42,16 @@ class _Meshes(Kind[MeshPart]):
     def markers(self, model: Model, part: MeshPart) -> Iterator[Marker]:
         yield Marker(f"m_{part.name}", _under(model, part), origin(part, model.rollers), part.axes)
 
+    def bushings(self, model: Model, part: MeshPart) -> Iterator[Bushing]:
+        yield from gate_spring(part.name, part.moving, model.bodies.position[part.body])
+
     def vectors(self, model: Model, part: MeshPart) -> Iterator[tuple[str, Floats]]:
         yield from gate_way(part.name, part.moving)
         yield from axis_vectors(f"v_{part.name}", part.axes)
         yield from axis_vectors(f"v_{part.name}_cm", model.bodies.rotation[part.body])
 
     def data(self, model: Model, part: MeshPart) -> dict[str, float]:
-        found = {"scale": part.scale}
+        found = {"scale": part.scale, **stops_data(model, part.name)}
         found |= {f"c_{a}": float(v) for a, v in zip("xyz", part.middle, strict=True)}
         found |= {f"j_{a}": float(v) for a, v in zip("xyz", part.gyration, strict=True)}
         return found | ({} if part.density is None else {"V": part.volume})

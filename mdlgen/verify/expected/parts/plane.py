@@ -8,21 +8,24 @@ from mdlgen.altair.rims import Side
 from mdlgen.model.tables import Floats, Model, PlanePart
 from mdlgen.verify.expected.parts.kind import (
     Box,
+    Bushing,
     Joint,
     Kind,
     Spring,
     gate_joint,
-    gate_pivot,
+    gate_points,
+    gate_spring,
     gate_way,
     own_vector,
     spring_of,
+    stops_data,
 )
 from mdlgen.verify.solver_expressions import motion
 
 
 class _Planes(Kind[PlanePart]):
     def points(self, model: Model, part: PlanePart) -> Iterator[tuple[str, Floats]]:
-        yield from gate_pivot(part.name, part.moving)
+        yield from gate_points(model, part.body, part.name, part.moving)
         yield f"p_{part.name}", model.bodies.position[part.body]
         for spring in self.springs(model, part):
             yield f"p_{part.name}_anchor", spring.anchor
@@ -39,6 +42,9 @@ class _Planes(Kind[PlanePart]):
         lengths = 2 * table.half[body]
         yield Box(f"gbox_{part.name}", f"b_{part.name}", table.position[body], table.rotation[body], lengths)
 
+    def bushings(self, model: Model, part: PlanePart) -> Iterator[Bushing]:
+        yield from gate_spring(part.name, part.moving, model.bodies.position[part.body])
+
     def vectors(self, model: Model, part: PlanePart) -> Iterator[tuple[str, Floats]]:
         yield from gate_way(part.name, part.moving)
         yield from own_vector(f"v_{part.name}_normal", part.normal)
@@ -54,6 +60,9 @@ class _Planes(Kind[PlanePart]):
     def springs(self, model: Model, part: PlanePart) -> Iterator[Spring]:
         if part.press is not None:
             yield spring_of(model, part, part.press, f"b_{part.name}")
+
+    def data(self, model: Model, part: PlanePart) -> dict[str, float]:
+        return stops_data(model, part.name)
 
     def graphics(self, part: PlanePart, side: Side) -> list[str]:
         return [f"gbox_{part.name}"]

@@ -19,6 +19,7 @@ from mdlgen.verify.expected.parts.kind import (
     Spring,
     own_vector,
     spring_of,
+    stops_data,
 )
 from mdlgen.verify.expected.units import KG, SECOND, reach
 from mdlgen.verify.solver_expressions import motion
@@ -97,7 +98,7 @@ class _Rollers(Kind[RollerPart]):
             radius, turn = float(rim.radius[k]), float(rim.end[k] - rim.begin[k]) / rim.facets[k]
             found |= {f"{name}_n": float(rim.facets[k]), f"{name}_turn": turn}
             found |= {f"{name}_deep": DEEP * radius, f"{name}_chord": 2 * radius * math.tan(turn / 2)}
-        found |= _of_motor(model, part)
+        found |= _of_motor(model, part) | stops_data(model, part.name)
         return found if part.arm is None else {**found, "I_a": part.arm.inertia * KG}
 
     def tables(self, model: Model) -> dict[str, Table]:
