@@ -134,9 +134,12 @@ def _check(node: ast.expr, expression: Expression, named: Known) -> None:
             _check(part, expression, named)
         case ast.Compare(left=left, comparators=others):
             sides = [_amount(part, expression, named) for part in (left, *others)]
-            for one, two in pairwise(sides):
+            for (part, one), (other, two) in pairwise(zip((left, *others), sides, strict=True)):
                 if not same(one.dimension, two.dimension):
-                    raise ValueError(f"compares {one.unit} with {two.unit}")
+                    bare = [side for side in (part, other) if isinstance(side, ast.Constant)]
+                    unit = one.unit if other in bare else two.unit
+                    hint = f"; write a unit with the number, as {bare[0].value:g} {unit}" if bare else ""
+                    raise ValueError(f"compares {one.unit} with {two.unit}{hint}")
         case _:
             if isinstance(expression.part(node, ON, named), Amount):
                 raise ValueError("is a number, not true or false; compare it, as gap(exit) < 20 mm")

@@ -57,6 +57,8 @@ def test_a_condition_says_what_it_says(text: str, holds: bool) -> None:
         ("eye.counts > 2", "eye has no 'counts'; did you mean 'count'?"),
         ("gap(eye) < 20 ms", "compares mm with s"),
         ("count(eye) > 2 mm", "compares no unit with mm"),
+        ("time > 0", "compares s with no unit; write a unit with the number, as 0 s"),
+        ("20 < gap(eye)", "as 20 "),
         ("count(eye)", "is a number, not true or false"),
         ("time > 3 ms and gap(eye)", "is a number, not true or false"),
         ("eye covered + 1 > 0", "what is covered is yes or no"),
