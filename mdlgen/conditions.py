@@ -44,6 +44,7 @@ CLOCK = "time"
 
 _CALL = re.compile(rf"\b({'|'.join(OF_SENSOR)})\s*\(\s*([A-Za-z]\w*)\s*\)", re.ASCII)
 _STATE = re.compile(r"\b([A-Za-z]\w*)\s+(covered|clear)\b", re.ASCII)
+_ASSIGNED = re.compile(r"(?<![<>=!])=(?!=)")
 _LOGIC = ("and", "or", "not")
 GRAMMAR = Grammar(
     functions=FORMULAS.functions,
@@ -85,6 +86,8 @@ def condition(text: str) -> Condition:
     try:
         return Condition(text.strip(), read(plain, GRAMMAR))
     except Refused as error:
+        if _ASSIGNED.search(plain):
+            raise ValueError(f"{text.strip()[:80]!r}: = compares nothing; write ==") from None
         raise ValueError(f"{text.strip()[:80]!r}: {error}; allowed are {GRAMMAR.allowed}") from None
 
 
