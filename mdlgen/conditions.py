@@ -48,6 +48,7 @@ CLOCK = "time"
 _CALL = re.compile(rf"\b({'|'.join((*OF_SENSOR, *OF_STAY))})\s*\(\s*([A-Za-z]\w*)\s*\)", re.ASCII)
 # what may stand behind a name, and two names of which the second one is none of these
 _SAID = ("covered", "clear", "entered", "left")
+_ASSIGNED = re.compile(r"(?<![<>=!])=(?!=)")
 _LOGIC = ("and", "or", "not")
 _STATE = re.compile(rf"\b([A-Za-z]\w*)\s+({'|'.join(_SAID)})\b", re.ASCII)
 _SIDE_BY_SIDE = re.compile(
@@ -106,6 +107,8 @@ def condition(text: str) -> Condition:
     try:
         return Condition(text.strip(), read(plain, GRAMMAR))
     except Refused as error:
+        if _ASSIGNED.search(plain):
+            raise ValueError(f"{text.strip()[:80]!r}: = compares nothing; write ==") from None
         if found := _SIDE_BY_SIDE.search(plain):
             close = did_you_mean(found[2], _SAID) or ";"
             raise ValueError(
@@ -168,9 +171,12 @@ def _check(node: ast.expr, expression: Expression, named: Known) -> None:
             _check(part, expression, named)
         case ast.Compare(left=left, comparators=others):
             sides = [_amount(part, expression, named) for part in (left, *others)]
-            for one, two in pairwise(sides):
+            for (part, one), (other, two) in pairwise(zip((left, *others), sides, strict=True)):
                 if not same(one.dimension, two.dimension):
-                    raise ValueError(f"compares {one.unit} with {two.unit}")
+                    bare = [side for side in (part, other) if isinstance(side, ast.Constant)]
+                    unit = one.unit if other in bare else two.unit
+                    hint = f"; write a unit with the number, as {bare[0].value:g} {unit}" if bare else ""
+                    raise ValueError(f"compares {one.unit} with {two.unit}{hint}")
         case _:
             if isinstance(expression.part(node, ON, named), Amount):
                 raise ValueError("is a number, not true or false; compare it, as gap(exit) < 20 mm")

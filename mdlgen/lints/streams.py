@@ -105,7 +105,10 @@ def _extent(model: Model, sheet: SheetPart) -> tuple[Floats, Floats]:
 
 def first_of_each(model: Model, found: Iterable[Lint]) -> Iterator[Lint]:
     """The findings, those of sheets of a stream once: of the first of these."""
-    streams = {s.name: _NUMBER.sub("", s.name) for s in model.sheets if s.passes and _NUMBER.search(s.name)}
+    numbered = {s.name: _NUMBER.sub("", s.name) for s in model.sheets if _NUMBER.search(s.name)}
+    # the first one of a stream does not pass where it comes in at the start, to stay
+    passing = {numbered[s.name] for s in model.sheets if s.passes and s.name in numbered}
+    streams = {name: stem for name, stem in numbered.items() if stem in passing}
     if not streams:
         yield from found
         return

@@ -41,11 +41,11 @@ def lints_end(record: dict[str, Any]) -> str:
 def overview_parts(record: dict[str, Any]) -> list[str | Rows]:
     """The output of `mdlgen check` before the lints: lines, and tables by rows."""
     lines: list[str | Rows] = [f"scene {record['scene']}, {record['analysis']}"]
-    for name, sheet in record["sheets"].items():
+    for names, sheet in _alike(record["sheets"]):
         size = " x ".join(f"{v:.5g}" for v in sheet["outline_mm"])
         lines += [
             "",
-            f"sheet {name}: {sheet['n_x']} x {sheet['n_y']} = {sheet['boxes']} boxes on {size} mm, "
+            f"{names}: {sheet['n_x']} x {sheet['n_y']} = {sheet['boxes']} boxes on {size} mm, "
             f"{sheet['bushings']} bushings, {sheet['layout']}, grid {sheet['grid']}",
             "",
             *_derived(sheet["derived"]),
@@ -78,6 +78,22 @@ def overview_parts(record: dict[str, Any]) -> list[str | Rows]:
         cost = Cost(**record["cost"])
         lines.append(f"a run takes {cost}{', mostly within a factor of 2' if cost.seconds >= 1.0 else ''}")
     return lines
+
+
+def _alike(sheets: dict[str, Any]) -> list[tuple[str, Any]]:
+    """Sheets by what is said of them, with the words for their names: those of a stream are all alike."""
+    groups: list[tuple[list[str], Any]] = []
+    for name, sheet in sheets.items():
+        same = next((names for names, other in groups if other == sheet), None)
+        if same is None:
+            groups.append(([name], sheet))
+        else:
+            same.append(name)
+    found = []
+    for names, sheet in groups:
+        all_of = ", ".join(names) if len(names) <= FEW else f"{names[0]}, {names[1]} to {names[-1]}"
+        found.append((f"sheet {all_of}" if len(names) == 1 else f"{len(names)} sheets {all_of}", sheet))
+    return found
 
 
 def _counts(record: dict[str, Any]) -> list[str]:

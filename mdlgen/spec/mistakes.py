@@ -17,6 +17,7 @@ from mdlgen.errors import SpecError, did_you_mean
 from mdlgen.spec.alternatives import others
 from mdlgen.spec.between import known, matching
 from mdlgen.spec.document import Document, SpecPath
+from mdlgen.spec.reacting import check_units
 from mdlgen.spec.scene import Scene
 from mdlgen.spec.setting import MADE, made
 from mdlgen.spec.shorthand import in_the_text, written_out
@@ -158,7 +159,8 @@ def _each(error: Any) -> Iterator[Any]:
 
 
 def _dangling(data: Any) -> list[PydanticCustomError]:
-    """Names in plain data of materials, sheets and parts that there are not; other mistakes aside."""
+    """Names in plain data of materials, sheets and parts that there are not, and conditions that compare
+    unlike units; other mistakes aside."""
     data = written_out(data, {})
     tables = {name: data[name] for name in _TABLES if isinstance(data.get(name), dict)}
     sheets, materials = tables.get("sheets", {}), tables.get("materials", {})
@@ -175,6 +177,9 @@ def _dangling(data: Any) -> list[PydanticCustomError]:
         for k, word in _items(_at(contact, ("between",))):
             if isinstance(word, str):
                 looks.append(partial(matching, word, parts, ("contacts", key, "between", k)))
+    for k, rule in _items(data.get("rules")):
+        if isinstance(word := _at(rule, ("when",)), str):
+            looks.append(partial(check_units, word, ("rules", k, "when")))
     found = []
     for look in looks[:_MOST_LOOKS]:
         try:
@@ -219,6 +224,9 @@ def _describe(error: Any, document: Document) -> SpecError:
         said = re.sub(
             r"valid dictionary or instance of \w+|valid dictionary or object.*", "mapping", error["msg"]
         )
+        if kind in ("model_type", "dict_type", "dataclass_type"):
+            keys = ", ".join(_allowed_keys(path))[:100]
+            said = "expected a mapping" + (f" with keys of {keys}" if keys else " of keys to values")
         if kind in ("tuple_type", "list_type") and isinstance(error["input"], dict):
             said = "expected a list, each item begun with '- '"
         message = f"{said.replace('valid tuple', 'list')}, got {error['input']!r}"[:300] + _example(inner)

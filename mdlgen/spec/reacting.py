@@ -52,6 +52,26 @@ def of_stream(scene: Scene, name: str) -> list[str]:
     return sheets_of(name, {"count": stream.count, "times": stream.times})
 
 
+def check_units(when: str, path: tuple[str | int, ...]) -> None:
+    """Raises the error of a condition that compares unlike units, whatever the things are that it names; of
+    one with other mistakes, or with parameters, nothing is said."""
+    dimensions = OF_SENSOR | OF_SHEET | OF_ROLLER | dict.fromkeys(OF_STAY)
+    try:
+        found = condition(when)
+    except ValueError:
+        return
+    of: dict[str, Dimension | None] = {CLOCK: TIME}
+    for name in found.expression.names:
+        _, dot, word = name.partition(".")
+        if name != CLOCK and not (dot and word in dimensions):
+            return
+        of.setdefault(name, dimensions.get(word))
+    try:
+        check(found, of, {})
+    except ValueError as error:
+        raise fail(str(error), path) from None
+
+
 def seen(scene: Scene, name: str) -> list[str]:
     """The sheets that a sensor sees."""
     found: list[str] = []

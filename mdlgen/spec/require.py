@@ -79,7 +79,8 @@ def requirement(text: str) -> Requirement:
         return Requirement(text, part=found[2], state=found[3], negated=found[1] is not None)
     found = _LIMIT.fullmatch(text)
     if not found:
-        raise ValueError(f"{text[:80]!r} is not understood; the forms are {FORMS}")
+        signs = "; in place of < and > write below and above" if re.search("[<>]", text) else ""
+        raise ValueError(f"{text[:80]!r} is not understood{signs}; the forms are {FORMS}")
     measure, sensor, how, values, always, time = found.groups()
     if sensor is not None and (measure not in AT_SENSORS or always or time):
         raise ValueError(

@@ -73,6 +73,8 @@ def test_a_condition_says_what_it_says(text: str, holds: bool) -> None:
         ("time > 3 ms and not infeed", "infeed alone says nothing; write left(infeed) > 0"),
         ("note > 3 mm", "note alone says nothing; write note.x > 5 mm, or note entered, or note left"),
         ("count(eye) > 2 mm", "compares no unit with mm"),
+        ("time > 0", "compares s with no unit; write a unit with the number, as 0 s"),
+        ("20 < gap(eye)", "as 20 "),
         ("count(eye)", "is a number, not true or false"),
         ("time > 3 ms and gap(eye)", "is a number, not true or false"),
         ("eye covered + 1 > 0", "what is covered is yes or no"),

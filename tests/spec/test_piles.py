@@ -112,10 +112,7 @@ def test_a_pile_at_rest_carries_itself() -> None:
         ("piles.cassette.count=0", "piles.cassette.count: Input should be greater than or equal to 1, got 0"),
         ("piles.cassette.of=nte", "piles.cassette.of: there is no sheet 'nte'; did you mean 'note'?"),
         ("piles.cassette.contact.frction=3", "unknown key 'frction'; did you mean 'friction'?"),
-        (
-            "piles.cassette.contact=null",
-            "contact: Input should be a valid dictionary, got None",
-        ),
+        ("piles.cassette.contact=null", "contact: expected a mapping of keys to values, got None"),
         ("piles.cassette.contact.between=[note, floor]", "leave between out"),
         ("piles.cassette.jitter=-1 mm", "-1 mm is outside what is allowed: at least 0 mm"),
         ("sheets.note.boxes=[3]", "sheets.note.boxes: expected a list of 2 whole numbers"),

@@ -84,6 +84,15 @@ def test_a_surface_goes_in_the_sense_of_its_own_drive() -> None:
         ),
         ({"rules": [rule(when="eye coverd")]}, "rules.0.when: 'eye coverd'"),
         ({"rules": [rule(when="gap(eye) < 3 ms")]}, "rules.0.when: 'gap(eye) < 3 ms': compares mm with s"),
+        (
+            {"rules": [rule(when="count(eye) = 1")]},
+            "rules.0.when: 'count(eye) = 1': = compares nothing; write ==",
+        ),
+        (
+            {"rules": [rule(do="stop")]},
+            "rules.0.do: expected a mapping with keys of speed, press, torque, move",
+        ),
+        ({"require": ["sheets.note.yaw < 1 deg"]}, "in place of < and > write below and above"),
         ({"rules": [rule(do={})]}, "rules.0.do: a rule has to do something"),
         (
             {"rules": [rule(do={"speed": {"counter_1_left": "1 rad/s"}})]},
@@ -118,6 +127,19 @@ def test_what_is_wrong_is_said_where_it_stands(changes: dict[str, Any], line: st
         scene(**changes)
     assert line in str(raised.value)
     assert "\n" not in raised.value.message
+
+
+def test_units_of_conditions_are_checked_beside_other_mistakes() -> None:
+    wrong = {"sheets.note.velocity": [1, "0 m/s", "0 m/s"]}
+    for when, said in (("time > 0", "as 0 s"), ("gap(eye) < 3 ms", "compares mm with s")):
+        with pytest.raises(SpecError) as raised:
+            scene(rules=[rule(when=when)], **wrong)
+        assert "velocity.0" in str(raised.value)
+        assert [said in str(other) for other in raised.value.others] == [True]
+    # names and parameters are not known while values are wrong
+    with pytest.raises(SpecError) as raised:
+        scene(rules=[rule(when="gap(eye) < span")], **wrong)
+    assert not raised.value.others
 
 
 @pytest.mark.parametrize("output", ["motionview", "motionsolve", "msolve"])
