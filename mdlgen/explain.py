@@ -320,8 +320,8 @@ SCENE = {
     ),
     "W186": (
         "A guide is touched on one side, left or right of its line as seen from `from` to `to`, or on both. "
-        "The sheets that this one has a contact with pass on the other side, or come from behind, in each of its "
-        "places: they go through it, or are caught by its back."
+        "The sheets that this one has a contact with pass on the other side, or come from behind, in each of "
+        "its places: they go through it, or are caught by its back."
     ),
     "W187": (
         "A part that turns about a pivot, or slides, goes through a sheet that lies in its way as the run "
