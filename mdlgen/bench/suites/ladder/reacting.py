@@ -6,6 +6,7 @@ Scenes and closed forms are those of the validation, at other steps and with oth
 from __future__ import annotations
 
 from dataclasses import replace
+from functools import partial
 
 import numpy as np
 
@@ -41,18 +42,12 @@ def _at_steps(case: BenchCase, steps: tuple[float, ...]) -> list[BenchCase]:
     for step in steps:
         sets = (*case.run.overrides, f"run.print_step={max(step, 0.5)!r} ms")
         own = replace(case.run, overrides=sets, step=step)
-        made.append(rung(f"step {step * 1e-3:g} s: {case.name}", own, _forced(case.measure)))
+        made.append(rung(f"step {step * 1e-3:g} s: {case.name}", own, partial(_forced, case.measure)))
     return made
 
 
-def _forced(measure: Measure) -> Measure:
-    def found(result: Result, reference: Result | None) -> list[Finding]:
-        return [
-            Finding(f"{finding.quantity}, relative", finding.error, FORCED)
-            for finding in measure(result, reference)
-        ]
-
-    return found
+def _forced(measure: Measure, result: Result, reference: Result | None) -> list[Finding]:
+    return [Finding(f"{one.quantity}, relative", one.error, FORCED) for one in measure(result, reference)]
 
 
 def _limiter(torque: float) -> BenchCase:
