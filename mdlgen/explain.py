@@ -139,7 +139,7 @@ SCENE = {
     "W128": (
         "Each value of a data set in MotionView text that is a formula here is one there, too, and follows "
         "its parameters. Some values have no place in a data set: lines of clamps and zones, sizes of "
-        "dog-ears. They stand in the text as numbers."
+        "dog-ears. They stand in the text as numbers. Nothing is said of a scene that the text refuses."
     ),
     "W129": (
         "Contacts name this roller, and in this run it can touch nothing: within the bounds in which all "
@@ -317,6 +317,21 @@ SCENE = {
         "A sheet has left once all of it is beyond its plane, on the other side of it than where it came in. "
         "Its boxes are watched in bounds that follow from all that may move them in the run, and the plane "
         "is outside of these. A sheet that never leaves costs time to the end of the run."
+    ),
+    "W186": (
+        "A guide is touched on one side, left or right of its line as seen from `from` to `to`, or on both. "
+        "The sheets that this one has a contact with pass on the other side, or come from behind, in each of "
+        "its places: they go through it, or are caught by its back."
+    ),
+    "W187": (
+        "A part that turns about a pivot, or slides, goes through a sheet that lies in its way as the run "
+        "begins. Without a contact between the two a run does not see that. Looked at are 25 places of the "
+        "part, between the least and the greatest that its profile or its positions have."
+    ),
+    "W188": (
+        "A torque limiter turns its roller from a shaft with up to its torque. The friction of the roller's "
+        "own bearing is above that, or its drag at the speed of the shaft is: with an empty nip the roller "
+        "stands, or runs slower than its shaft and heats the limiter."
     ),
     "W189": (
         "A rule sends the machine to a state that no `in` names, and each rule has an `in`: from then on no "

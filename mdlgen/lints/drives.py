@@ -11,6 +11,8 @@ from mdlgen.model.tables import Model, RollerPart
 from mdlgen.model.tables.axle import CONTROLLED, LIMITER, STEPPER, AxlePart
 from mdlgen.units import PER_SECOND
 
+_MORE_TORQUE = "give more torque, or less friction and drag"
+
 
 def weak_motor(model: Model) -> Iterator[Lint]:
     """Motors that bearing friction, or the nip, can hold."""
@@ -51,6 +53,29 @@ def strong_limiter(model: Model) -> Iterator[Lint]:
                 f"{axle.limit:.4g} N mm is not below the {grip:.4g} N mm that friction in its nip can take: "
                 "it never slips, and the roller is as one that is fixed to its shaft",
                 "give less torque, or press the roller harder",
+            )
+
+
+def weak_limiter(model: Model) -> Iterator[Lint]:
+    """Limiters that do not turn their roller while nothing touches it, against its own bearing."""
+    for roller, axle in _axles(model):
+        if axle.kind != LIMITER or not roller.speed or roller.one_way:
+            continue
+        where, target = f"rollers.{roller.name}.limiter.torque", abs(roller.speed)
+        left = axle.limit - axle.friction
+        if left <= 0.0:
+            message = (
+                f"{axle.limit:.4g} N mm is not above the friction of its bearing, {axle.friction:.4g} N mm"
+            )
+            yield Lint("W188", where, f"{message}: the shaft never turns the roller", _MORE_TORQUE)
+        elif axle.drag * target > left:
+            yield Lint(
+                "W188",
+                where,
+                f"{axle.limit:.4g} N mm turns the empty roller against the drag of its bearing at "
+                f"{PER_SECOND * left / axle.drag:.4g} rad/s at most, and its shaft has "
+                f"{PER_SECOND * target:.4g} rad/s: it always slips",
+                _MORE_TORQUE,
             )
 
 

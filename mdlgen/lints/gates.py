@@ -10,9 +10,10 @@ from mdlgen.lints.lint import Lint
 from mdlgen.model.moved import BEYOND, displaced
 from mdlgen.model.overlaps.parts import HAIR
 from mdlgen.model.parts.kinds import kind_of
-from mdlgen.model.tables import Floats, MachinePart, Model, MovingPart
+from mdlgen.model.tables import Floats, GuidePart, MachinePart, Model, MovingPart
 
 _STATIONS = 25  # places between both ends at which a part is checked
+_FACING = 0.99  # cosine: a sheet passes a face that is square to its path on neither side
 _SHARES = np.linspace(0.0, 1.0, 9)  # of each side of a block
 
 
@@ -39,6 +40,81 @@ def sweeps(model: Model) -> Iterator[Lint]:
                     "and nothing holds them apart",
                     "shorten its way, or move one of them",
                 )
+
+
+def through_sheets(model: Model) -> Iterator[Lint]:
+    """Parts that go through a sheet as it lies at the start, and have no contact with it."""
+    table, bodies = model.contacts, model.bodies
+    met = {frozenset(pair) for pair in zip(table.part_a, table.part_b, strict=True)}
+    for gate, motion in model.gates:
+        if motion.free:
+            continue
+        low, high = motion.ends
+        stations = np.linspace(low, high, _STATIONS)
+        for sheet in model.sheets:
+            if sheet.enters != 0.0 or frozenset((gate.name, sheet.name)) in met:
+                continue
+            boxes = slice(sheet.first, sheet.first + sheet.count)
+            # the sheet as the part sees it, which turns the other way
+            seen = displaced(motion, -stations, bodies.position[boxes])
+            still = displaced(motion, np.zeros(1), bodies.position[boxes])
+            deep = [_inside(model, gate, places) for places in (still, seen)]
+            if deep[0] <= HAIR < deep[1]:
+                yield Lint(
+                    "W187",
+                    _where(gate, motion),
+                    f"on its way it goes through {sheet.name} where that lies at the start, {deep[1]:.3g} mm "
+                    "deep at most, and the two have no contact",
+                    f"give a contact between {sheet.name} and {gate.name}, or move one of them",
+                )
+
+
+def turned_away(model: Model) -> Iterator[Lint]:
+    """Straight guides that move, are touched on one side, and show their back to all that comes by."""
+    table = model.contacts
+    met = {frozenset(pair) for pair in zip(table.part_a, table.part_b, strict=True)}
+    for gate, motion in model.gates:
+        if motion.free or not isinstance(gate, GuidePart) or gate.side not in ("left", "right"):
+            continue
+        sheets = [sheet for sheet in model.sheets if frozenset((gate.name, sheet.name)) in met]
+        if not all(np.any(sheet.velocity) for sheet in sheets):
+            continue  # where it goes is not known
+        along, normal = gate.axes[:, 0], gate.axes[:, 1] * (1.0 if gate.side == "left" else -1.0)
+        line = gate.center + np.linspace(-0.5, 0.5, len(_SHARES))[:, None] * gate.length * along
+        places = np.unique([0.0, *motion.ends, *motion.places])
+        faces, tips = displaced(motion, places, line), displaced(motion, places, line + normal)
+        backs = [
+            _back(face, (tip - face)[0], sheet.center, sheet.velocity)
+            for face, tip in zip(faces, tips, strict=True)
+            for sheet in sheets
+        ]
+        known = [back for back in backs if back is not None]
+        if known and all(known):
+            other = "right" if gate.side == "left" else "left"
+            yield Lint(
+                "W186",
+                f"guides.{gate.name}.line.side",
+                f"at each of its places its face looks away from where {sheets[0].name} comes: that passes "
+                "behind it",
+                f"side: {other}, if the sheet is to run along it",
+            )
+
+
+def _back(face: Floats, normal: Floats, center: Floats, velocity: Floats) -> bool | None:
+    """Whether what goes on from a centre along its velocity meets the back of a face, points (n, 3) along a
+    straight line, or passes behind it; None: it does neither, and not before it, or it is not known."""
+    way = velocity / np.linalg.norm(velocity)
+    ahead = float(normal @ way)
+    facing = abs(ahead) > _FACING
+    across = face[-1] - face[0] if facing else normal
+    across = across - float(across @ way) * way
+    high, far = (face - center) @ across, (face - center) @ way
+    crosses = (high[:-1] * high[1:] < 0.0) & (far[1:] > 0.0)
+    if crosses.any():
+        return ahead > 0.0
+    if facing or not (np.all(high > 0.0) or np.all(high < 0.0)):
+        return None
+    return bool(high[0] > 0.0)
 
 
 def unused(model: Model) -> Iterator[Lint]:

@@ -4,7 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
+from mdlgen.altair.axles import refuse_axles
+from mdlgen.altair.moving import refuse_moving
+from mdlgen.altair.reactions import refuse_rules
+from mdlgen.altair.streams import refuse_passing
 from mdlgen.conditions import condition
+from mdlgen.errors import RefusedError
 from mdlgen.formulas import names
 from mdlgen.lints.lint import Lint
 from mdlgen.model.parameters.names import OF_USER
@@ -27,12 +32,23 @@ def parameters(model: Model) -> Iterator[Lint]:
                 "no value of the scene follows from this parameter",
                 f"use it in a formula, as 2*{p.member}, or leave it out",
             )
+    if not _written(model):
+        return
     for where, formula in model.unfollowed:
-        # texts refuse rules, and leave sensors out
-        if names(formula) and not where.startswith(("rules.", "sensors.")):
+        if names(formula) and not where.startswith("sensors."):  # which texts leave out
             yield Lint(
                 "W128",
                 where,
                 f"MotionView text has this as a number: there it does not follow {', '.join(names(formula))}",
                 "write the text again after a change of them",
             )
+
+
+def _written(model: Model) -> bool:
+    """Whether MotionView text has a machine of this kind at all."""
+    try:
+        for refuse in (refuse_rules, refuse_passing, refuse_axles, refuse_moving):
+            refuse(model, "MotionView text")
+    except RefusedError:
+        return False
+    return True

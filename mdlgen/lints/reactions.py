@@ -2,18 +2,22 @@
 
 from __future__ import annotations
 
+import ast
 import math
-from collections.abc import Iterator
-from itertools import combinations
+from collections.abc import Callable, Iterator
+from itertools import combinations, pairwise
 
 import numpy as np
 
-from mdlgen.conditions import CLOCK, OF_SENSOR, Condition, condition
-from mdlgen.formulas import Amount
+from mdlgen.conditions import CLOCK, OF_SENSOR, Condition, Known, condition
+from mdlgen.formulas import ON, PI, Amount
 from mdlgen.lints.lint import Lint
 from mdlgen.model.tables import Model, Order, RulePart, SensorPart
 
-_TIMES = 1001  # at which a condition of time alone is evaluated (convention)
+# Number of times at which a condition of time alone is evaluated, in addition to those at which comparisons
+# that are linear in time turn (convention).
+_TIMES = 1001
+_LINEAR = 1e-9  # relative to a change: a smaller distance from a line is round-off
 
 
 def sees_nothing(model: Model) -> Iterator[Lint]:
@@ -135,11 +139,37 @@ def _blindly(of: Condition) -> bool:
 def _in_time(model: Model, of: Condition) -> bool:
     """True if a condition of time alone becomes true in the run; any other condition may."""
     amounts = {name: Amount(value, dimension) for name, value, dimension in model.reactions.amounts}
+    amounts["pi"] = PI
     if not set(of.expression.names) <= {CLOCK, *amounts}:
         return True
-    times = np.linspace(0.0, model.run.duration, _TIMES).tolist()
-    unit = (0.0, 0.0, 1.0, 0.0)
-    return any(of.holds(lambda name, t=t: Amount(t, unit) if name == CLOCK else amounts[name]) for t in times)
+    end, unit = model.run.duration, (0.0, 0.0, 1.0, 0.0)
+
+    def known(t: float) -> Known:
+        return lambda name: Amount(t, unit) if name == CLOCK else amounts[name]
+
+    turns = [turn for part in ast.walk(of.expression.tree) for turn in _turns(of, part, known, end)]
+    # what holds between two times at which a comparison turns holds in the middle of them
+    ends = sorted({0.0, end, *(turn for turn in turns if 0.0 <= turn <= end)})
+    middles = [0.5 * (one + two) for one, two in pairwise(ends)]
+    return any(of.holds(known(t)) for t in (*ends, *middles, *np.linspace(0.0, end, _TIMES).tolist()))
+
+
+def _turns(of: Condition, part: ast.AST, known: Callable[[float], Known], end: float) -> list[float]:
+    """Times at which a comparison that is linear in time turns; none of one that is not."""
+    if not isinstance(part, ast.Compare):
+        return []
+    found = []
+    for one, two in pairwise((part.left, *part.comparators)):
+        try:
+            low, middle, high = (
+                of.expression.part(one, ON, known(t)).value - of.expression.part(two, ON, known(t)).value
+                for t in (0.0, 0.5 * end, end)
+            )
+        except (ArithmeticError, ValueError):
+            continue
+        if high != low and abs(middle - 0.5 * (low + high)) <= _LINEAR * abs(high - low):
+            found.append(end * low / (low - high))
+    return found
 
 
 def _together(one: RulePart, two: RulePart) -> bool:

@@ -13,6 +13,7 @@ from mdlgen.model.tables import Floats, Ints, Model
 from mdlgen.report import boxes
 from mdlgen.report.meshes import machine, moving
 from mdlgen.report.motion import names, poses, start
+from mdlgen.report.sights import covered, sights
 
 if TYPE_CHECKING:
     from mdlgen.results.result import Result
@@ -72,6 +73,7 @@ def animation(
         for name, (unit, values) in colours.items()
     ]
     shown = _states(model, moves, time, place, turn, packed_colours)
+    shown["meshes"] += _sensors(model, result)
     return {**shown, **_stays(model, result.stays), "static": len(at) == 1}
 
 
@@ -81,6 +83,7 @@ def at_the_start(model: Model, colours: list[dict[str, Any]]) -> dict[str, Any]:
     moves = np.array(moving(model), dtype=np.int64)
     place, turn = (whole[None, moves] for whole in start(model))
     shown = _states(model, moves, np.zeros(1), place, turn, colours)
+    shown["meshes"] += _sensors(model, None)
     return {**shown, **_stays(model, begun_stays(model)), "static": True}
 
 
@@ -144,6 +147,23 @@ def span(values: Floats, unit: str) -> tuple[float, float, str]:
         beyond = f"{part:.2g} % of boxes and times above, up to {most:.4g} {unit}".strip()
         most = usual
     return (least if least > NEAR * most else 0.0), most, beyond
+
+
+def _sensors(model: Model, result: Result | None) -> list[dict[str, Any]]:
+    """What is drawn of sensors, each with the `spans` in which it was covered [ms]."""
+    return [
+        {
+            "name": sensor.name,
+            "kind": "sensor",
+            "row": -1,
+            "place": [0.0, 0.0, 0.0],
+            "turn": [1.0, 0.0, 0.0, 0.0],
+            "points": packed(solid.points, "f4"),
+            "triangles": packed(solid.triangles, "u2"),
+            "spans": covered(result, sensor.name),
+        }
+        for sensor, solid in sights(model)
+    ]
 
 
 def _meshes(model: Model, moves: Ints) -> list[dict[str, Any]]:

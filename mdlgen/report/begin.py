@@ -136,7 +136,7 @@ def of_no_part(model: Model) -> list[Lint]:
 def _about(model: Model) -> dict[str, tuple[Lint, ...]]:
     """Lints by the parts that they are about: of a contact both of its parts."""
     found: dict[str, list[Lint]] = {}
-    names = {part.name for part in (*model.sheets, *model.machine, *model.probes)}
+    names = {part.name for part in (*model.sheets, *model.machine, *model.probes, *model.reactions.sensors)}
     table = model.contacts
     for lint in lints(model):
         kind, _, rest = lint.where.partition(".")

@@ -9,11 +9,13 @@ import numpy as np
 from mdlgen.model.parts.kinds import kind_of
 from mdlgen.model.tables import Anchor, Floats, Model, SheetPart
 from mdlgen.report.arrows import extent
+from mdlgen.report.sights import WORDS
 from mdlgen.units import PER_SECOND
 
 
 def facts(model: Model) -> Iterator[tuple[str, str, Floats, list[str]]]:
-    """Name, kind, place of the name and facts of each sheet, part of the machine and probe."""
+    """Name, kind, place of the name and facts of each sheet, part of the machine, probe and
+    sensor."""
     bodies, seen = model.bodies, extent(model)
     for sheet in model.sheets:
         mine = slice(sheet.first, sheet.first + sheet.count)
@@ -23,6 +25,14 @@ def facts(model: Model) -> Iterator[tuple[str, str, Floats, list[str]]]:
         yield part.name, part.kind, kind.label(model, part, seen), kind.facts(model, part)
     for probe in model.probes:
         yield probe.name, "probe", _of_anchor(model, probe), [f"a point of {model.sheets[probe.sheet].name}"]
+    for sensor in model.reactions.sensors:
+        reach = float(np.linalg.norm(sensor.way))
+        yield (
+            sensor.name,
+            "sensor",
+            sensor.ends.mean(axis=0) + 0.5 * sensor.way,
+            [f"{WORDS[sensor.kind]}, {reach:.4g} mm long"],
+        )
 
 
 def _of_anchor(model: Model, anchor: Anchor) -> Floats:

@@ -1,9 +1,11 @@
 // The sheets and the machine in space.
 
 const VIRIDIS = ["#440154", "#482878", "#3e4989", "#31688e", "#26828e", "#1f9e89", "#35b779", "#6ece58", "#b5de2b", "#fde725"];
+const COVERED = 0xd6336c, CLEAR = 0x2f9e44; // the rod along which a sensor sees, with a sheet there and without
 const KINDS = {
   roller: { color: 0xaab4bf }, sector: { color: 0x56616b }, mark: { color: 0xd55e00 }, arm: { color: 0xa98f63 }, mesh: { color: 0x7d93a8 },
   plane: { color: 0xc8ccd2, opacity: 0.35 }, guide: { color: 0x7d93a8, opacity: 0.45 },
+  sensor: { color: CLEAR },
   drive: { color: 0x0072b2 }, press: { color: 0x009e73 }, motion: { color: 0xcc79a7 }, load: { color: 0xe69f00 },
 };
 const GHOST = { color: 0x808890, opacity: 0.4 };
@@ -137,8 +139,8 @@ async function player(canvas, changed) {
       shape.setIndex(new THREE.BufferAttribute(unpack(mesh.triangles, Uint16Array), 1));
       const flat = shape.toNonIndexed();
       flat.computeVertexNormals();
-      // an arrow is not hidden by what it is about
-      const over = ARROWS.includes(mesh.kind);
+      // an arrow is not hidden by what it is about, nor a beam by the sheet that covers it
+      const over = ARROWS.includes(mesh.kind) || mesh.kind === "sensor";
       const drawn = new THREE.Mesh(flat, paint(KINDS[mesh.kind], over ? { depthTest: false, transparent: true } : {}));
       drawn.renderOrder = Number(over);
       drawn.position.fromArray(mesh.place);
@@ -222,7 +224,11 @@ async function player(canvas, changed) {
     if (there) middle.multiplyScalar(1 / there); else middle.copy(run.last);
     points.needsUpdate = true;
     tints.needsUpdate = true;
-    for (const { drawn, row } of run.parts) {
+    for (const { drawn, row, mesh } of run.parts) {
+      if (mesh.spans && run !== ghost) {
+        const tone = mesh.spans.some(([begin, end]) => time >= begin && time <= end) ? COVERED : CLEAR;
+        drawn.material.uniforms.tone.value.set((tone >> 16) / 255, ((tone >> 8) & 255) / 255, (tone & 255) / 255);
+      }
       if (row < 0) continue;
       pose(run, row, k, part);
       drawn.position.copy(position);

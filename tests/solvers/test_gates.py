@@ -183,6 +183,14 @@ GATE = "guides.gate.pivot"
     ("changes", "code"),
     [
         (("rollers.counter.center=[30 mm, 0 mm, 8 mm]",), "W173"),
+        (
+            (
+                "sheets.lies={material: paper, size: [20 mm, 20 mm], thickness: 0.1 mm, mass: 0.1 g, "
+                "boxes: [4, 4], center: [20 mm, 0 mm, 4 mm]}",
+            ),
+            "W187",
+        ),
+        (("guides.gate.line.side=right",), "W186"),
         ((f"{GATE}.positions={{closed: 0 deg, open: 20 deg, wide: 40 deg}}",), "W174"),
         ((f"{GATE}.profile=[[0 ms, closed], [190 ms, open]]",), "W175"),
         ((f"{GATE}={{at: [2 mm, 0 mm, -0.7 mm], axis: -y, inertia: 9 g*mm^2, torque: 1 N*mm}}",), "W176"),

@@ -255,6 +255,22 @@ def test_a_strong_limiter_holds_the_note_and_the_lint_says_so() -> None:
 
 
 @pytest.mark.parametrize(
+    ("bearing", "says"),
+    [
+        ("torque: 7 N*mm", "5 N mm is not above the friction of its bearing, 7 N mm"),
+        ("torque: 1 N*mm, drag: 300 N*mm*ms/rad", "at 13.33 rad/s at most, and its shaft has 20 rad/s"),
+    ],
+)
+def test_a_limiter_that_does_not_turn_the_empty_roller_is_named(bearing: str, says: str) -> None:
+    from mdlgen.checks import lints
+
+    shaft = "rollers.retard.drive={speed: 20 rad/s}"
+    found = lints(retarded(shaft, f"rollers.retard.bearing={{{bearing}}}"))
+    assert says in next(lint.message for lint in found if lint.code == "W188")
+    assert "W188" not in {lint.code for lint in lints(retarded(shaft))}
+
+
+@pytest.mark.parametrize(
     ("overrides", "code"),
     [
         ([MOTOR, "rollers.feed.bearing={torque: 21 N*mm}"], "W160"),

@@ -25,7 +25,7 @@ from mdlgen.model.tables import Model
 from mdlgen.paths import samples
 from mdlgen.registry import emitter
 from mdlgen.spec.fields import IDENTIFIER
-from mdlgen.spec.load import loads
+from mdlgen.spec.load import load, loads
 from mdlgen.spec.scene import Scene
 from mdlgen.spec.schema import json_schema
 from mdlgen.study import sweep
@@ -333,6 +333,12 @@ def test_lints_of_a_parameter_without_use_and_of_values_that_a_text_does_not_fol
     assert found["W127"].where == "parameters.spare"
     assert found["W128"].where == "sheets.note.clamp.length" and "does not follow r" in found["W128"].message
     assert not {"W127", "W128"} & {lint.code for lint in lints(lower(loads(SHORT)))}
+    # a text refuses what comes in and leaves, so that its values are in none
+    for sample in ("stream", "sorter", "register"):
+        assert "W128" not in {lint.code for lint in lints(lower(load(samples() / f"{sample}.yaml")))}
+    stream = ["parameters.each=60 ms", "streams.infeed.every=each", "streams.infeed.jitter=each/60"]
+    found = {lint.code for lint in lints(lower(load(samples() / "stream.yaml", stream)))}
+    assert not {"W127", "W128"} & found
 
 
 def test_a_sweep_goes_over_a_parameter() -> None:

@@ -159,6 +159,10 @@ def test_texts_refuse_rules_and_name_sensors(output: str) -> None:
         ({}, set()),
         ({STILL: [["900 mm", "0 mm", "-5 mm"], ["900 mm", "0 mm", "5 mm"]]}, {"W165", "W167"}),
         ({"rules": [rule(when="time > 200 ms")]}, {"W165"}),
+        # shorter than a thousandth of the run, at times that no grid has
+        ({"rules": [rule(when="time > 71.3021 ms and time < 71.3022 ms")]}, set()),
+        ({"rules": [rule(when="2*time == 142.6042 ms")]}, set()),
+        ({"rules": [rule(when="time > 71.3022 ms and time < 71.3021 ms")]}, {"W165"}),
         ({"rules": [rule(when="not eye covered")]}, set()),
         ({"rules": [rule(**{"in": "a"}), rule(**{"in": "b"})]}, {"W165"}),
         ({"rules": [rule(**{"in": "a", "do": {"go": "b"}}), rule(**{"in": "b"})]}, set()),

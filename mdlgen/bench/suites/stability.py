@@ -7,7 +7,7 @@ The rungs of each kind stand in a file of their own, with their oracles.
 from __future__ import annotations
 
 from mdlgen.bench.case import BenchCase
-from mdlgen.bench.suites.ladder import blocks, laws, machines, piles, strips
+from mdlgen.bench.suites.ladder import blocks, laws, machines, piles, reacting, strips
 
 # One rung of each kind that a slow solver ends within a few seconds.
 QUICK = (
@@ -29,11 +29,16 @@ QUICK = (
     "poisson 0.49: pulled plate",
     "hardening 0.01: box that swings on its hinge",
     "cover of 0.3 mm with poisson 0.49: note in its nip",
+    "step 0.0002 s: sheet that falls past a beam",
+    "gear of 200: motor that spins a roller up",
 )
 
 
 def cases(solver: str, reference: str, quick: bool) -> list[BenchCase]:
     """All rungs, or one of each kind."""
-    kinds = [strips.rungs(reference), blocks.rungs(), machines.rungs(reference), piles.rungs(), laws.rungs()]
+    kinds = [
+        *(strips.rungs(reference), blocks.rungs(), machines.rungs(reference)),
+        *(piles.rungs(), laws.rungs(), reacting.rungs()),
+    ]
     rungs = [rung for kind in kinds for rung in kind]
     return [rung for rung in rungs if rung.name in QUICK] if quick else rungs

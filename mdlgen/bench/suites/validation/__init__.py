@@ -20,6 +20,7 @@ from mdlgen.bench.suites.validation import (
     rigid,
     rolling,
     rubbing,
+    sensing,
     starting,
     sticking,
     swinging,
@@ -28,7 +29,7 @@ from mdlgen.bench.suites.validation import (
 
 GROUPS = (
     *(bending, plates, poisson, swinging, yielding, belts, rolling, rigid, rubbing, sticking, edges),
-    *(driving, moving, passing, starting),
+    *(driving, moving, sensing, passing, starting),
 )
 
 
