@@ -6,8 +6,6 @@ import math
 from collections.abc import Callable
 from dataclasses import replace
 
-import numpy as np
-
 from mdlgen.backends.lattice.integrate.ends import limit_of
 from mdlgen.backends.lattice.integrate.limit import Deadline
 from mdlgen.backends.lattice.kernels.tuning import COMPARED
@@ -15,6 +13,7 @@ from mdlgen.model.tables import Model
 from mdlgen.results import audit
 from mdlgen.results.estimates import NOT_KNOWN, by_finer, estimated, open_yet, unlike
 from mdlgen.results.result import Result
+from mdlgen.results.stored import finite
 
 # Reasons why the error of a run at a given step is unknown: the other run failed, or differs too much.
 UNKNOWN = f"{NOT_KNOWN}: a run at twice the step"
@@ -85,8 +84,8 @@ def in_time(result: Result, deadline: Deadline) -> Result:
 
 def ended(run: Result) -> bool:
     """True if a run reached its end; one whose energies do not balance still shows how errors fall."""
-    finite = all(np.isfinite(a).all() for a in (run.position, run.velocity, run.spin))
-    return finite and bool(run.time[-1] >= run.model.run.duration * (1.0 - 1e-9))
+    whole = all(finite(a) for a in (run.position, run.velocity, run.spin))
+    return whole and bool(run.time[-1] >= run.model.run.duration * (1.0 - 1e-9))
 
 
 def reason(run: Result) -> str:

@@ -26,7 +26,6 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import dataclass
-from functools import cached_property
 
 import numpy as np
 
@@ -89,10 +88,10 @@ class Pair:
     def _ends(self, slack: float) -> bool:
         return abs(float(self.result.time[-1] - self.other.time[-1])) <= slack
 
-    @cached_property
-    def apart(self) -> Floats:
-        """Positions of all bodies in the first run minus those in the second one [mm], (t, bodies, 3)."""
-        return self.result.position[self.here] - self.other.position[self.there]
+    def apart(self, bodies: slice | int) -> Floats:
+        """Positions of bodies in the first run minus those in the second one [mm], (t, bodies, 3); of one body
+        (t, 3)."""
+        return self.result.position[self.here, bodies] - self.other.position[self.there, bodies]
 
 
 def differences(result: Result, other: Result, judged: bool = False) -> dict[str, Difference]:
@@ -141,7 +140,7 @@ def _sheets(pair: Pair) -> Iterator[Difference]:
         start = model.bodies.position[boxes]
         travel = float(np.linalg.norm(share @ (pair.result.position[-1, boxes] - start)))
         scale = max(travel, TENTH * max(sheet.size))
-        square = share @ np.mean(np.square(pair.apart[:, boxes]).sum(axis=2), axis=0)
+        square = share @ np.mean(np.square(pair.apart(boxes)).sum(axis=2), axis=0)
         yield Difference(f"sheets.{sheet.name}.position", float(np.sqrt(square)) / scale, scale, "mm", scale)
         if sheet.count == 1 and not model.bodies.fixed[sheet.first]:
             angle = angles(
@@ -187,7 +186,7 @@ def _pressed(pair: Pair) -> Iterator[Difference]:
             way = result.position[:, part.body] @ part.press.direction
             size = part.radius if isinstance(part, RollerPart) else part.size[2]
             scale = max(float(np.ptp(way)), TENTH * size)
-            gap = pair.apart[:, part.body] @ part.press.direction
+            gap = pair.apart(part.body) @ part.press.direction
             judged = max(scale, whole)
             yield Difference(f"{kind}.{part.name}.slide", _rms(gap) / scale, scale, "mm", judged)
     for part, moving in result.model.gates:

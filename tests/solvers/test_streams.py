@@ -14,8 +14,10 @@ from same import bits
 
 import mdlgen
 from mdlgen.backends.lattice import run as lattice
+from mdlgen.backends.lattice.integrate import record
 from mdlgen.backends.lattice.integrate.limit import Calls
 from mdlgen.backends.lattice.integrate.passes import UNSEEN, _Pass, division
+from mdlgen.backends.lattice.integrate.states import States
 from mdlgen.backends.lattice.integrate.there import There
 from mdlgen.errors import RefusedError
 from mdlgen.model.tables import Model
@@ -154,7 +156,7 @@ def test_a_rule_lets_sheets_in() -> None:
 
 
 def test_steps_have_the_bodies_that_are_there(monkeypatch: pytest.MonkeyPatch) -> None:
-    """And a result is the same with all of them, and with calls of compiled code of any length."""
+    """And is stored; a result is the same with all of them, and with calls of compiled code of any length."""
     made = model(
         DRAWN, "streams.infeed.count=2", "run.duration=70 ms", "run.step=0.5 ms", "run.tolerance=0.1"
     )
@@ -163,6 +165,7 @@ def test_steps_have_the_bodies_that_are_there(monkeypatch: pytest.MonkeyPatch) -
     result = lattice.solve(made)
     monkeypatch.setattr(Calls, "took", lambda self, many, seconds: setattr(self, "many", 3))
     monkeypatch.setattr(There, "of", classmethod(lambda cls, gone: cls()))
+    monkeypatch.setattr(record, "StatesThere", lambda model, mirror: States(model, mirror, 1))
     again = lattice.solve(made)
     for name in ("position", "rotation", "velocity", "spin", "contact_force", "stays"):
         assert np.array_equal(getattr(result, name), getattr(again, name), equal_nan=True), name

@@ -66,6 +66,7 @@ from mdlgen.model.overlaps.unheld import Unheld
 from mdlgen.model.starts import fastest_start
 from mdlgen.model.tables import Model
 from mdlgen.results.result import Result
+from mdlgen.results.stored import finite
 from mdlgen.runs.checkpoint import Checkpointer
 
 Progress = Callable[[float, float, int, int], None]
@@ -358,9 +359,7 @@ class _Pass:
         if self._reacting is not None:
             result.reactions = tuple(self._reacting.machine.log)
         result.counts = {name: int(self._counters[column]) for name, column in COUNTED.items()}
-        if result.ok and not all(
-            np.isfinite(a).all() for a in (result.position, result.velocity, result.spin)
-        ):
+        if result.ok and not all(finite(a) for a in (result.position, result.velocity, result.spin)):
             result = result.failed("the state went non-finite")
         wrong = unbalanced(result)
         if wrong is None or status not in (

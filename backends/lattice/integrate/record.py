@@ -5,11 +5,13 @@ from __future__ import annotations
 from typing import NamedTuple
 
 import numpy as np
+from numpy.typing import NDArray
 
 from mdlgen.backends.lattice.arrays import System
 from mdlgen.backends.lattice.hinges import plastic_rows
 from mdlgen.backends.lattice.integrate.islands import groups
-from mdlgen.backends.lattice.integrate.states import WIDTHS, States
+from mdlgen.backends.lattice.integrate.states import States
+from mdlgen.backends.lattice.integrate.states_there import StatesThere
 from mdlgen.backends.lattice.integrate.there import Whole
 from mdlgen.backends.lattice.kernels.entries import PROGRAM
 from mdlgen.backends.lattice.kernels.state import (
@@ -37,8 +39,10 @@ from mdlgen.backends.lattice.kernels.state import (
     Workspace,
 )
 from mdlgen.mechanics.turning import ABOUT_A, ABOUT_B, ALONG, LIMIT, TURNING
+from mdlgen.model.passing import at_start, passing
 from mdlgen.model.tables import Model
 from mdlgen.results import audit
+from mdlgen.results.passing import CAME, LEFT
 from mdlgen.results.result import ContactStatistics, Energy, Result
 from mdlgen.version import if_there
 
@@ -70,7 +74,11 @@ class Recorder:
         self._parts = {p.name: int(work.islands.part[whole.there.number(p.body)]) for p in model.machine}
         self.model, self.system, self.kept, self.work = model, system, work.kept, work
         self._asleep = np.zeros((groups(work), 3))
-        self._states = States(model, system.mirror, outputs + 1)
+        # with sheets that come in or leave, those that are there alone
+        passes = passing(model)
+        self._states: States | StatesThere = (
+            StatesThere(model, system.mirror) if passes else States(model, system.mirror, outputs + 1)
+        )
         self._forces: list[np.ndarray] = []
         self._plastic: list[np.ndarray] = []  # see hinges.plastic_rows; of elastic scenes none
         self._behind: list[np.ndarray] = []  # see Result.behind
@@ -107,7 +115,7 @@ class Recorder:
         self._most = np.maximum(self._most, energies[:, KINETIC] + energies[:, ELASTIC])
         self._times.append(t)
         state = self.work.state
-        self._states.add(self.whole.motion(state, self.work.mid.motion))
+        self._states.add(self.whole.motion(state, self.work.mid.motion), self._there())
         if t == 0.0:
             self.kept.rows[:, NOW] = rows[:, NOW]
             # a contact at the start may have opened in the middle of the first step
@@ -119,6 +127,12 @@ class Recorder:
             self._plastic.append(plastic_rows(self.system.yields))
         if self._axles:
             self._behind.append(state.s[self._axles])
+
+    def _there(self) -> NDArray[np.bool_]:
+        """Which sheets are, (sheets,)."""
+        if self.stays is None:
+            return np.array(at_start(self.model))
+        return ~np.isnan(self.stays[:, CAME]) & np.isnan(self.stays[:, LEFT])
 
     @property
     def last(self) -> float:
@@ -133,7 +147,7 @@ class Recorder:
     def arrays(self) -> dict[str, np.ndarray]:
         """All stored arrays, and the sums of the compiled code."""
         return {
-            **self._states.all(),
+            **self._states.kept(),
             **({"p": self._rotations(len(self._times))} if len(self.model.plastic) else {}),
             **({"b": self._lags(len(self._times))} if self._axles else {}),
             "f": np.array(self._forces).reshape(len(self._times), len(self.model.contacts), len(NOW)),
@@ -146,7 +160,7 @@ class Recorder:
 
     def restore(self, arrays: dict[str, np.ndarray]) -> None:
         """Restores the state that `arrays` returned."""
-        self._states.restore({name: arrays[name] for name in WIDTHS})
+        self._states.restore(arrays)
         self._forces = list(arrays["f"])
         self._plastic = list(arrays.get("p", ()))
         self._behind = list(arrays.get("b", ()))

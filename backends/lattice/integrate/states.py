@@ -8,6 +8,7 @@ states at a time.
 from __future__ import annotations
 
 import numpy as np
+from numpy.typing import NDArray
 
 from mdlgen.backends.lattice.kernels.tuning import TOGETHER
 from mdlgen.mechanics.frame import Motion
@@ -32,8 +33,8 @@ class States:
         # thread may read it
         self._ready: tuple[int, list[np.ndarray]] = (0, [])
 
-    def add(self, motion: Motion) -> None:
-        """Stores a state."""
+    def add(self, motion: Motion, there: NDArray[np.bool_] | None = None) -> None:
+        """Stores a state; all sheets are there."""
         whole, turned = self._ready
         x = self._arrays["x"]
         if self.count == len(x):
@@ -70,7 +71,7 @@ class States:
         """The arrays of all states, (times, bodies, width), which are these themselves."""
         self._complete()
         found = {name: array[: self.count] for name, array in self._arrays.items()}
-        return found | {"e": _without_jumps(found["e"])}
+        return found | {"e": without_jumps(found["e"])}
 
     def first(self, times: int) -> dict[str, Floats]:
         """Copies of the arrays of the first states, while the run may go on."""
@@ -78,19 +79,24 @@ class States:
         found = {name: array[:times].copy() for name, array in arrays.items()}
         if times > whole:
             self._fill({name: array[whole:] for name, array in found.items()}, turned[: times - whole])
-        return found | {"e": _without_jumps(found["e"])}
+        return found | {"e": without_jumps(found["e"])}
+
+    def kept(self) -> dict[str, Floats]:
+        """All that it has, to go on from."""
+        return self.all()
 
     def restore(self, arrays: dict[str, Floats]) -> None:
-        """Restores the state that `all` returned."""
+        """Restores the state that `kept` returned."""
         self.count = len(arrays["x"])
         room = max(self.count, len(self._arrays["x"]))
-        for name, array in arrays.items():
+        for name in WIDTHS:
+            array = arrays[name]
             self._arrays[name] = np.empty((room, *array.shape[1:]))
             self._arrays[name][: self.count] = array
         self._ready = (self.count, [])
 
 
-def _without_jumps(parameters: np.ndarray) -> np.ndarray:
+def without_jumps(parameters: np.ndarray) -> np.ndarray:
     """Euler parameters (t, bodies, 4), in place, with the signs that let them go on from one state to the
     next; nan for all where some are not finite."""
     if not np.isfinite(parameters).all():
