@@ -277,8 +277,9 @@ ASKED = 3
 FEWEST_COMPARED = 4
 
 # [s] Convention: where `run.limit` is not set a search begins no pass with which all of them would take
-# more wall time: a designer waits a minute for a result, and may ask for more.
-PATIENCE = 60.0
+# more wall time, and ends one that does where there is a result: a designer waits a minute for it, of which
+# a little is left for estimates, and may ask for more.
+PATIENCE = 55.0
 
 # Derived: a pass takes at least so much longer than that at twice its step: it has twice as many steps.
 TWICE = 2.0
