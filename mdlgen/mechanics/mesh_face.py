@@ -30,11 +30,9 @@ def turning(cosine):
 
 @njit(cache=True, error_model="numpy", forceinline=True)
 def _per_area(element, depth):
-    """Energy of a place of a broad face, over its area in the face."""
+    """Energy of a place of a broad face on a fixed mesh, over its area in the face."""
     if depth <= 0.0 or depth > element.deepest:
         return 0.0
-    if element.linear:
-        return 0.5 * element.stiffness * depth * depth
     return 0.4 * element.stiffness * depth * depth * math.sqrt(depth)
 
 
@@ -47,7 +45,8 @@ def beyond(meshes, t, face, element, part, u, v, z):
     What is stored is the integral of P(z) over the triangle as the face sees it. Its slope along the face is
     the pressure along the triangle's normal, and P times the way out of the triangle, over all of its sides.
     The latter cancels where the next triangle has the same part. At an edge beyond which a mesh is too steep
-    for the face nothing cancels it, and the face is pressed along its own normal there.
+    for the face nothing cancels it, and the face is pressed along its own normal there. A mesh on a roller is
+    left out, of which a nip has one direction for all that presses.
     """
     triangles, force, torque = meshes.triangles, (0.0, 0.0, 0.0), (0.0, 0.0, 0.0)
     for i in range(3):

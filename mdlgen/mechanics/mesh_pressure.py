@@ -324,7 +324,7 @@ def _element(sums, room, head, meshes, t, face):
         # what of the law acts changes as the box turns
         torque = add(torque, scale((sums[ENERGY] - before[4]) * turning(cosine), cross(way, normal)))
     push = scale(force, normal)
-    if force > 0.0 and not block and not face.middles:
+    if force > 0.0 and not (block or face.middles or face.linear):
         along_sides, turned = beyond(meshes, t, face, element, part, (u0, u1, u2), (v0, v1, v2), (z0, z1, z2))
         push, torque = add(push, along_sides), add(torque, turned)
     for i in range(3):
