@@ -21,7 +21,7 @@ from mdlgen.backends.lattice.compared import (
     thinned,
 )
 from mdlgen.backends.lattice.integrate.beside import Beside, Stopped, own
-from mdlgen.backends.lattice.integrate.ends import limit_of, unbalanced
+from mdlgen.backends.lattice.integrate.ends import cut, limit_of, off_balance, unbalanced
 from mdlgen.backends.lattice.integrate.limit import Deadline
 from mdlgen.backends.lattice.integrate.passes import Progress, Watch, accuracy, division, first_step, one_pass
 from mdlgen.backends.lattice.integrate.work import arrays, flexible, warm
@@ -45,9 +45,9 @@ from mdlgen.backends.lattice.symmetry.mirror import halve
 from mdlgen.backends.lattice.watches import Watches
 from mdlgen.model.tables import Model
 from mdlgen.model.wider import wider
-from mdlgen.results import chaos
+from mdlgen.results import audit, chaos
 from mdlgen.results.estimates import NOT_KNOWN, SAME_STEPS, estimated, marked, within
-from mdlgen.results.result import Result
+from mdlgen.results.result import OK, Result
 from mdlgen.runs.checkpoint import Checkpointer
 
 Report = tuple[float, float, int, int]  # arguments of progress
@@ -217,6 +217,10 @@ class Search:
         # bound on the steps relative to the first pass: that of the finest one; not needed with a time limit
         most = math.inf if self._limited else 2.0 ** (MOST_REFINED if self._flexible else MOST_REFINED_RIGID)
         on = self._system if on is None else on
+        if not self._limited and any(run.ok for run in self._runs):
+            # there is a result: a pass that is slower than was foreseen ends in time, too
+            left = PATIENCE - sum(run.wall_s for run in self._runs)
+            seen = seen._replace(deadline=Deadline(clock.perf_counter() + max(left, 0.0)))
         return one_pass(of or self._model, on, h, seen, miss, MAY_MAKE * fine, times=most)
 
     def _ends(self, run: Result, k: int, shown: bool = True) -> bool:
@@ -231,7 +235,7 @@ class Search:
         if run.ok and before[0].ok:
             # the energy error of nips is in their law: a finer step has the same
             return within(run)
-        return not ended(run) and same and not self._late.over and unbalanced(run) is None
+        return not ended(run) and same and not cut(run) and unbalanced(run) is None
 
     def _two(self) -> Result:
         """Runs the second pass in parallel with the first one: rigid blocks seldom need a third."""
@@ -324,6 +328,8 @@ class Search:
         runs, late = self._runs, f"{PATIENCE:g} s of wall time (set run.limit to allow more)"
         late = limit_of(self._model) if self._limited else late
         complete = [k for k, run in enumerate(runs) if run.ok]
+        if not complete and (unkept := self._unkept()) is not None:
+            return unkept
         if not complete:
             return max(runs, key=lambda run: float(run.time[-1])) if self._stopped else runs[0]
         k = complete[0]
@@ -336,15 +342,24 @@ class Search:
         else:
             best = estimated(best, [])
         tried = f"no step below {best.step:.3g} ms was tried"
-        why = f"{late} left no time for a finer step" if self._stopped else tried
+        why = f"{late} left no time for a finer step" if self._stopped or cut(runs[0]) else tried
         unknown = best.error_unknown
-        if k > 0 and not runs[0].status.startswith(late):  # not because run.limit was over
+        if k > 0 and not cut(runs[0]):
             unknown = f"{NOT_KNOWN}: a run at half the step ended early: {runs[0].status}"
         elif not before and best.error_estimate is None and not unknown:
             other = f"{UNKNOWN} failed: {runs[k + 1].status}" if len(runs) > k + 1 else ""
             unknown = other or f"{NOT_KNOWN}: {late} left no time for another run"
         best = replace(best, error_unknown=unknown)
         return marked(self._chaos(replace(best, search_ended=why), before, len(runs) - 1 - k))
+
+    def _unkept(self) -> Result | None:
+        """The finest run that came to its end, but did not keep its energy, at no step that was tried: it is
+        shown as long as that is a small part, and says how much it is."""
+        found = [run for run in self._runs if ended(run)]
+        if not found or not audit.shown(found[0].energy):
+            return None
+        best = estimated(replace(found[0], status=OK), found[1:3])
+        return marked(replace(best, error_unknown=f"{NOT_KNOWN}: at the finest step {off_balance(found[0])}"))
 
     def _parts(self, k: int) -> bool:
         """True if the motion is chaotic, so that no finer step helps: a run from a slightly moved start

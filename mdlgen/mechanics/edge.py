@@ -28,7 +28,7 @@ from __future__ import annotations
 import math
 from typing import NamedTuple
 
-from mdlgen.mechanics.frame import ARC_RADIUS, Vector
+from mdlgen.mechanics.frame import Vector
 from mdlgen.mechanics.point import Load, push, turn
 from mdlgen.mechanics.vector import add, back, cross, dot, local, rotate, scale, sub
 from mdlgen.program.kernel import BORROWS, njit
@@ -41,7 +41,6 @@ LEVEL, LEANING = 0.03, 0.1
 SHARED = 0.02
 # So what a box of a sheet may touch: this times what it is long.
 TAKES = 1.0 + 2.0 * SHARED
-FACES = 0.35  # cosine of the angle to an end at which a side may come to stand before it
 # Fields of a body record: its free ends as a bit mask; the radii of the edges of its upper and its lower
 # face, and 1 where friction holds what is on them (a static analysis).
 UPPER, LOWER, HOLDS = 0, 1, 2
@@ -151,7 +150,7 @@ def rounded(u, h, thick, edge):
 
 
 @njit(cache=True, error_model="numpy", forceinline=True)
-def _station(a, half, p, sign, end):
+def station(a, half, p, sign, end):
     """The side `sign` of axis p of a box before an end: from where to where along it (-1 to 1) it is within
     the end's length."""
     r = 1 - p
@@ -165,7 +164,7 @@ def _station(a, half, p, sign, end):
 
 
 @njit(cache=True, error_model="numpy", forceinline=True)
-def _corner(a, half, p, sign, t, up, end):
+def corner_of(a, half, p, sign, t, up, end):
     """A point of an outer side: the place t along it, on the upper or lower face; (point, u, h)."""
     r = 1 - p
     at = add(a.x, rotate(a.r, local(p, r, 2, sign * half[p], t * half[r], up * half[2])))
@@ -177,14 +176,14 @@ def _corner(a, half, p, sign, t, up, end):
 def stub(out, a, half, p, sign, end, plate, b, law):
     """The outer side `sign` of axis p of box a against an end of plate b, which does not turn."""
     thick, edge = 2.0 * plate.half[2], plate.edge
-    first, last = _station(a, half, p, sign, end)
+    first, last = station(a, half, p, sign, end)
     if last - first <= 1e-9:
         return
     share = 0.5 * law.k * (0.5 * (last - first) if law.shared else 1.0)
     for place in range(2):
         t = first if place == 0 else last
-        one, u1, h1 = _corner(a, half, p, sign, t, 1.0, end)
-        two, u2, h2 = _corner(a, half, p, sign, t, -1.0, end)
+        one, u1, h1 = corner_of(a, half, p, sign, t, 1.0, end)
+        two, u2, h2 = corner_of(a, half, p, sign, t, -1.0, end)
         if (h1 <= 0.0 and h2 >= thick) or (h2 <= 0.0 and h1 >= thick):
             # the side is taller than the end: it meets it in the middle of the plate
             part = (0.5 * thick - h1) / (h2 - h1)
@@ -357,44 +356,3 @@ def deepest_at(thick, half, beside):
     """Greatest depth of a box (half lengths) in a plate of this half thickness, which it equals. A side that
     stands before an end may be further in, by half of the box, since the next box follows behind it."""
     return thick if beside == 0 else max(thick, min(half[0], half[1]))
-
-
-@njit(cache=True, error_model="numpy")
-def stands(a, box, b, plate):
-    """Ends of plate b before which outer sides of box a stand, given the stored ones (see the module)."""
-    half, exposed = box
-    ends, edge, beside = plate.ends, plate.edge, plate.beside
-    thick = 2.0 * plate.half[2]
-    found = 0
-    for side in range(4):
-        if exposed & (1 << side) == 0:
-            continue
-        p, sign = side // 2, 1.0 if side % 2 == 1 else -1.0
-        known = (beside >> (3 * side)) & 7
-        faces = scale(sign, (a.r[p], a.r[3 + p], a.r[6 + p]))
-        which, most = known - 1, FACES
-        if known == 0:
-            for i in range(4 if plate.shape[ARC_RADIUS] == 0.0 else 2):
-                if ends & (1 << i) != 0:
-                    end = end_of(i, b, plate)
-                    if -dot(faces, end.out) > most:
-                        which, most = i, -dot(faces, end.out)
-        if which < 0:
-            continue
-        end = end_of(which, b, plate)
-        first, last = _station(a, half, p, sign, end)
-        if last - first <= 1e-9:
-            continue
-        inside, above, below, over, before = -1e300, 1e300, -1e300, False, False
-        for corner in range(4):
-            t, face = first if corner % 2 == 0 else last, 1.0 if corner < 2 else -1.0
-            _at, u, h = _corner(a, half, p, sign, t, face, end)
-            inside, above, below = max(inside, u), min(above, h), max(below, h)
-            depth, along, _down = rounded(u, h, thick, edge)
-            over = over or (depth > 0.0 and along == 0.0)
-            before = before or (depth > 0.0 and along != 0.0)
-        clear = below <= 0.0 or above >= thick
-        # of a twisted side one corner may be over the top of the round while another stands far below it
-        if not clear and (inside <= 0.0 or (known > 0 and (before or not over))):
-            found |= (which + 1) << (3 * side)
-    return found

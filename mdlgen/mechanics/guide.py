@@ -22,13 +22,11 @@ import numpy as np
 from mdlgen.mechanics.contact import box_sector, clip, face_corners, outer
 from mdlgen.mechanics.edge import HOLDS, UPPER, hands_over, held, leaning, leaning_growth
 from mdlgen.mechanics.frame import ARC_ANGLE, ARC_MIDDLE, ARC_RADIUS, Cylinder, Sector, scaled
-from mdlgen.mechanics.plate import box_ends, box_flat, corner_areas, facing
+from mdlgen.mechanics.plate import UPRIGHT, box_ends, box_flat, corner_areas, facing
 from mdlgen.mechanics.point import STORED, Load, push, turn
 from mdlgen.mechanics.vector import add, back, cross, dot, rotate, scale, sub
 from mdlgen.program.kernel import CALLED, OWNS, njit
 
-# Cosine of the angle of a sheet to a plate beyond which the sheet's middle plane does not determine the side.
-UPRIGHT = 0.3
 INSIDE, OUTSIDE, BOTH = 1, 2, 3  # sides: left of a line or inside an arc; right or outside; both
 
 
@@ -64,7 +62,7 @@ def _beyond(i, shape):
 
 
 @njit(cache=True, error_model="numpy")
-def _side(at, upright, plate):
+def arc_side(at, upright, plate):
     """Face of an arc that a box at a place touches: 1.0 the hollow one, -1.0 the round one.
 
     The side is that of the arc's nearest place relative to the middle plane of the sheet, whose normal is
@@ -113,7 +111,7 @@ def box_guide(out, a, box, b, plate, law):
     away = math.sqrt(at[0] * at[0] + at[1] * at[1])
     if away == 0.0:
         return
-    sign = _side(at, back(rb, (ra[2], ra[5], ra[8])), plate)
+    sign = arc_side(at, back(rb, (ra[2], ra[5], ra[8])), plate)
     normal = (-sign * at[0] / away, -sign * at[1] / away, 0.0)
     look = outer(back(ra, rotate(rb, normal)), box.exposed)
     tilted = back(rb, facing(look, ra))

@@ -11,13 +11,12 @@ import math
 from typing import NamedTuple
 
 from mdlgen.mechanics.frame import Vector
-from mdlgen.mechanics.mesh_side import ramp
+from mdlgen.mechanics.mesh_face import STEEP, beyond, part_of, turning
 from mdlgen.mechanics.mesh_tables import BEYOND
 from mdlgen.mechanics.tree import AFTER, AREA, COUNT, FIRST, LEAST, MOST, NORMAL, THICK, behind, span
 from mdlgen.mechanics.vector import add, cross, dot, scale, three, vec
 from mdlgen.program.kernel import njit
 
-STEEP, GENTLE = 0.4, 0.6  # cosines of the angles between which the law of broad faces ends
 EVER = 1e300
 # Columns of the sums of a face: force along the file's axes (3); its torque about the box's middle (3); the
 # sum of the magnitudes; their moments in the face, of first and of second order, and with the depth; energy;
@@ -80,19 +79,6 @@ class Element(NamedTuple):
     cosine: float
     leans_along: float
     leans_across: float
-
-
-@njit(cache=True, error_model="numpy", forceinline=True)
-def _part(cosine):
-    """Part of the broad faces' law that acts on a triangle at an angle to them."""
-    return ramp(cosine, STEEP, GENTLE)
-
-
-@njit(cache=True, error_model="numpy", forceinline=True)
-def _turning(cosine):
-    """Growth of `_part` with the cosine, over `_part`."""
-    s = (cosine - STEEP) / (GENTLE - STEEP)
-    return 6.0 * (1.0 - s) / (s * (3.0 - 2.0 * s) * (GENTLE - STEEP)) if 0.0 < s < 1.0 else 0.0
 
 
 @njit(cache=True, error_model="numpy")
@@ -296,7 +282,7 @@ def _element(sums, room, head, meshes, t, face):
     v2 = across[0] * triangles[t, 6] + across[1] * triangles[t, 7] + across[2] * triangles[t, 8] - where[2]
     if min(v0, v1, v2) > hr or max(v0, v1, v2) < -hr:
         return
-    part = 1.0 if block else _part(cosine)
+    part = 1.0 if block else part_of(cosine)
     element = Element(
         part * face.stiffness,
         face.linear,
@@ -338,9 +324,13 @@ def _element(sums, room, head, meshes, t, face):
     torque = cross(at, normal)
     if not block:
         # the part of the law that acts changes as the box turns
-        torque = add(torque, scale((sums[ENERGY] - before[4]) * _turning(cosine), cross(way, normal)))
+        torque = add(torque, scale((sums[ENERGY] - before[4]) * turning(cosine), cross(way, normal)))
+    push = scale(force, normal)
+    if force > 0.0 and not (block or face.middles or face.linear):
+        along_sides, turned = beyond(meshes, t, face, element, part, (u0, u1, u2), (v0, v1, v2), (z0, z1, z2))
+        push, torque = add(push, along_sides), add(torque, turned)
     for i in range(3):
-        sums[FORCE + i] += force * normal[i]
+        sums[FORCE + i] += push[i]
         sums[TORQUE + i] += torque[i]
 
 

@@ -7,7 +7,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from mdlgen.mechanics.tree import AFTER, AREA, FIRST, THICK, WIDTH, build_tree
+from mdlgen.mechanics.tree import AFTER, AREA, FIRST, NEXT, THICK, WIDTH, build_tree
 from mdlgen.model.meshes import origin
 from mdlgen.model.tables import Floats, Ints, Model
 
@@ -51,6 +51,7 @@ def mesh_tables(model: Model, mm: float = 1.0) -> Meshes:
             before, shift = sum(map(len, links)), sum(map(len, triangles))
             link[:, FIRST] += shift
             link[:, AFTER] += before
+            table[:, NEXT:][table[:, NEXT:] >= 0] += shift
             thin = bool((table[:, THICK] < DEEPEST * mm).any()) or _sharp(mesh.corners, mesh.triangles)
             built[mesh.file, mesh.scale] = before, before + len(link), _unseen(table), thin
             bounds.append(box)

@@ -9,8 +9,8 @@ import math
 
 import numpy as np
 
+from mdlgen.mechanics.beside import stands
 from mdlgen.mechanics.by_kind import KINDS, by_kind
-from mdlgen.mechanics.edge import stands
 from mdlgen.mechanics.frame import ARC_RADIUS, LAW_ROLLING, LAW_SMOOTHING, box_of, held_frame
 from mdlgen.mechanics.measured import MEASURED, by_pressure, lay_measured
 from mdlgen.mechanics.point import FORCE_A, HOLDS, OUT, POINTS, PRESSING, resist_rolling

@@ -31,6 +31,8 @@ from mdlgen.mechanics.vector import add, back, cross, dot, rotate, scale, sub, v
 from mdlgen.program.kernel import BORROWS, CALLED, OWNS, njit
 
 STRAIGHT = (0.0, 0.0, 0.0)
+# Cosine of the angle of a sheet to a plate beyond which the sheet's middle plane does not tell the side.
+UPRIGHT = 0.3
 
 
 @njit(cache=True, error_model="numpy", forceinline=True)
@@ -94,6 +96,22 @@ def box_ends(out, a, box, b, plate, law):
             line(out, a, box, end_of(i, b, plate), plate, b, law)
 
 
+@njit(cache=True, error_model="numpy", forceinline=True)
+def flat_side(at, upright, plate):
+    """Which face of a flat plate a box at a place meets, 1.0 the upper and -1.0 the lower one: that on which
+    the middle plane of the sheet is, whose normal is `upright` (guide's axes); of a box that is upright to
+    the plate that on which its centre is."""
+    half, top = plate.half, plate.top
+    near = (
+        min(max(at[0], -half[0]), half[0]),
+        0.5 * (top + (top - 2.0 * half[2])),
+        min(max(at[2], -half[1]), half[1]),
+    )
+    if abs(upright[1]) > UPRIGHT:
+        return 1.0 if dot(upright, sub(near, at)) * upright[1] < 0.0 else -1.0
+    return 1.0 if at[1] >= near[1] else -1.0
+
+
 @njit(cache=True, error_model="numpy", **OWNS)
 def box_flat(out, a, box, b, plate, covered, law):
     """Box a on a flat plate b, whose axes are those of a guide.
@@ -115,16 +133,7 @@ def box_flat(out, a, box, b, plate, covered, law):
     if plate.beside != 0 and not inside:
         box_ends(out, a, box, b, plate, law)
         return
-    # side of the sheet's middle on which the plate is
-    upright = back(rb, (ra[2], ra[5], ra[8]))
-    near = (
-        min(max(at[0], -half_b[0]), half_b[0]),
-        0.5 * (top + bottom),
-        min(max(at[2], -half_b[1]), half_b[1]),
-    )
-    sign = 1.0 if at[1] >= near[1] else -1.0
-    if abs(upright[1]) > 0.3:
-        sign = 1.0 if dot(upright, sub(near, at)) * upright[1] < 0.0 else -1.0
+    sign = flat_side(at, back(rb, (ra[2], ra[5], ra[8])), plate)
     normal, radius = (0.0, sign, 0.0), edge[UPPER] if sign > 0.0 else edge[LOWER]
     look = outer(back(ra, rotate(rb, normal)), box.exposed)
     if inside:

@@ -20,8 +20,9 @@ LEAF = 8  # triangles
 LOW, HIGH, LEAST, MOST = 0, 3, 6, 9
 # Columns of its links: first triangle, number of them (0: there are nodes below), next node if it is skipped.
 FIRST, COUNT, AFTER = 0, 1, 2
-# Columns of a triangle: corners (9), outward normal (3), depth up to which it is the nearest side, area.
-NORMAL, THICK, AREA, WIDTH = 9, 12, 13, 14
+# Columns of a triangle: corners (9), outward normal (3), depth up to which it is the nearest side, area, and
+# the triangles beyond its sides, from its first corner on (3), -1: none.
+NORMAL, THICK, AREA, NEXT, WIDTH = 9, 12, 13, 14, 17
 
 
 def build_tree(corners: Floats, triangles: Ints, most: float) -> tuple[Floats, Ints, Floats]:
@@ -40,9 +41,22 @@ def build_tree(corners: Floats, triangles: Ints, most: float) -> tuple[Floats, I
     table[:, AREA] = 0.5 * sizes[kept]
     order, links = _split(places[kept].mean(axis=1))
     table = table[order]
+    table[:, NEXT:] = _neighbours(triangles[kept[order]])
     bounds = _bounds(table, links)
     set_thickness(bounds, links, table, most)
     return bounds, links, table
+
+
+def _neighbours(triangles: Ints) -> Ints:
+    """Which triangle is beyond each side of each (m, 3), from its first corner on; -1: none, or several."""
+    sides = np.sort(triangles[:, [[0, 1], [1, 2], [2, 0]]].reshape(-1, 2), axis=1)
+    _, side, count = np.unique(sides, axis=0, return_inverse=True, return_counts=True)
+    order = np.argsort(side.ravel(), kind="stable")
+    found = np.full(len(sides), -1)
+    two = count[side.ravel()[order]] == 2
+    one, other = order[two][::2], order[two][1::2]
+    found[one], found[other] = other // 3, one // 3
+    return found.reshape(-1, 3)
 
 
 def _split(middles: Floats) -> tuple[Ints, Ints]:

@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from mdlgen.mechanics.mesh_pressure import GENTLE, STEEP
+from mdlgen.mechanics.mesh_face import GENTLE, STEEP
 from mdlgen.mechanics.mesh_tables import DEEPEST
 from mdlgen.model.rotations import turns
 from mdlgen.model.tables import Floats, Ints, MeshPart, SheetPart

@@ -84,13 +84,26 @@ def reason(model: Model, energy: Energy, step: float, loss: float | None = None)
     nips = made_by_nips(energy)
     if nips is not None and -energy.dissipated > MOST * energy.scale:
         return nips
+    message = off_balance(energy, loss)
+    if message is None:
+        return None
+    if model.run.step is not None:
+        return f"{message}; {ADVICE}, so that a step is found that keeps the energy"
+    return f"{message}; give a run.step of {step / FINER:.2g} ms"
+
+
+def off_balance(energy: Energy, loss: float | None = None) -> str | None:
+    """By how much the energies of a run do not balance, None where they do; `loss` as of `reason`."""
     off = energy.balance_error
     if off <= GAIN and (loss is None or off >= -loss):
         return None
     whence, most = ("came from nowhere", GAIN) if off > 0.0 else ("got lost", loss or 0.0)
     where = f" in {', '.join(energy.of[:3])}" if energy.of else ""
     message = f"{abs(off) * energy.scale:.3g} N mm of energy {whence}{where}, {100 * abs(off):.3g} % of "
-    message += f"{energy.scale:.3g} N mm; allowed are {100 * most:g} %; "
-    if model.run.step is not None:
-        return message + f"{ADVICE}, so that a step is found that keeps the energy"
-    return message + f"give a run.step of {step / FINER:.2g} ms"
+    return message + f"{energy.scale:.3g} N mm; allowed are {100 * most:g} %"
+
+
+def shown(energy: Energy) -> bool:
+    """Whether a complete run whose energies do not balance is worth showing, marked as inaccurate: what is
+    missing or too much is no more than MOST of the scale."""
+    return max(abs(energy.balance_error), -energy.dissipated / max(energy.scale, LEAST)) <= MOST

@@ -21,7 +21,7 @@ if TYPE_CHECKING:
 # A side that has come to an end no faster than this [mm/ms] was laid there. It is stopped where its speed
 # falls below this part of the speed at which it came, no further than this from the end [mm].
 STANDS, STOPPED, NEAR = 0.01, 0.1, 1.0
-_FACES = 0.35  # cosine of the angle between a side and an end that it comes to, as in mechanics.edge
+_FACES = 0.35  # cosine of the angle between a side and an end that it comes to, as in mechanics.beside
 
 
 class Stop(NamedTuple):

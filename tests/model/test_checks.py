@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from pathlib import Path
 
 import pytest
@@ -101,6 +102,27 @@ def test_a_roller_that_begins_half_of_the_thickness_deep_is_no_finding(
         f"starts {0.51 * thickness:.3g} mm inside note, more than {thickness / 2:g} mm, half of its thickness"
     )
     assert stated in message
+
+
+BEYOND = """
+name: edges
+materials: {m: {E_md: 3 GPa, E_cd: 3 GPa}}
+sheets: {note: {material: m, size: [60 mm, 40 mm], thickness: 0.4 mm, mass: 1 g, boxes: [6, 2]}}
+rollers: {low: {center: [32 mm, 0 mm, -9 mm], axis: y, radius: 10 mm, width: 8 mm, mass: 9 g}}
+planes: {pad: {center: [-30 mm, 0 mm, -0.9 mm], normal: z, size: [10 mm, 8 mm, 2 mm], mass: 9 g}}
+contacts: [{between: [note, [low, pad]], stiffness: 300 N/mm^1.5, friction: 0.3}]
+run: {duration: 10 ms}
+"""
+
+
+def test_an_edge_of_a_sheet_that_begins_in_a_roller_or_a_narrow_plate_is_found() -> None:
+    """The roller's axis is 2 mm beyond the sheet, and the plate lies between the corners of the sheet."""
+    made = {lint.where: lint.message for lint in lints(lower(loads(BEYOND))) if lint.code == "W112"}
+    deep = 10.0 - math.hypot(2.0, 8.8)
+    assert f"low starts {deep:.3g} mm inside note" in made["rollers.low.center"]
+    assert "pad starts 0.3 mm inside note" in made["planes.pad.center"]
+    clear = ("rollers.low.center.0=36 mm", "planes.pad.center.0=-35.1 mm")
+    assert not [x for x in lints(lower(loads(BEYOND, overrides=clear))) if x.code == "W112"]
 
 
 def test_a_pressed_roller_whose_counterpart_is_forgotten() -> None:

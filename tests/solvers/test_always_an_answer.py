@@ -14,6 +14,7 @@ import pytest
 import mdlgen
 from mdlgen.backends.lattice import run as lattice
 from mdlgen.backends.lattice import watches
+from mdlgen.backends.lattice.arrays import build
 from mdlgen.backends.lattice.kernels import tuning
 from mdlgen.backends.lattice.kernels.tuning import HELD_UP, REPORTED
 from mdlgen.model.tables import Model
@@ -282,3 +283,32 @@ def test_a_slow_pass_names_its_step_and_the_body_that_holds_it_up(caplog: pytest
     assert seen == [2.0, 3.0]
     body = model.bodies.name[3]
     assert caplog.messages == [f"steps of 0.01 ms at 3 ms: the velocity of {body} converges slowly"]
+
+
+def test_a_run_that_keeps_its_energy_at_no_step_is_shown_and_marked() -> None:
+    """Up to a quarter of what passes through it: beyond, it is no result."""
+    done = mdlgen.solve(case("short_step", "run.step=0.05 ms"), "lattice")
+
+    def best(*off: float) -> Result:
+        search = lattice.Search(done.model, build(done.model), watches.Watches(None, None, True))
+        search._runs = [
+            replace(done, energy=replace(done.energy, balance_error=part)).failed("it came from nowhere")
+            for part in off
+        ]
+        return search._best()
+
+    found = best(0.03, 0.3)
+    assert found.status == "inaccurate"
+    assert found.error_unknown.startswith("the error is not known: at the finest step ")
+    assert "of energy came from nowhere, 3 % of" in found.error_unknown
+    assert best(-0.03, -0.03).error_unknown.endswith("N mm; allowed are 1 %")
+    assert not best(0.3, 0.03).usable
+
+
+def test_a_pass_that_is_slower_than_was_foreseen_ends_in_time(monkeypatch: pytest.MonkeyPatch) -> None:
+    """There is a complete run by then, which is the result."""
+    monkeypatch.setattr(lattice, "PATIENCE", 0.0)
+    monkeypatch.setattr(lattice.Search, "_stops", lambda self: False)
+    result = lattice.solve(thrown())
+    assert result.usable and result.time[-1] == result.model.run.duration
+    assert "of wall time" in result.search_ended and "left no time" in result.search_ended

@@ -106,13 +106,14 @@ def reason_of(
 
 
 def limited(model: Model, t: float) -> str:
-    """The reason of a pass that `run.limit` ended at a time [ms]."""
+    """The reason of a pass that ended at a time [ms] since it had no more."""
     return f"{limit_of(model)} of wall time was over at {t:.6g} ms"
 
 
 def limit_of(model: Model) -> str:
-    """`run.limit` with its value, for messages."""
-    assert model.run.limit is not None, "asked only where there is one"
+    """The limit of wall time of a run, for messages."""
+    if model.run.limit is None:
+        return f"{tuning.PATIENCE:g} s"
     return f"run.limit of {1e-3 * model.run.limit:g} s"
 
 
@@ -125,3 +126,13 @@ def unbalanced(run: Result) -> str | None:
     """Reason why the energy balance of a run invalidates it, or None."""
     loss = audit.LOSS if flexible(run.model) else audit.LOSS_RIGID
     return audit.reason(run.model, run.energy, run.step, loss)
+
+
+def off_balance(run: Result) -> str | None:
+    """By how much a run's energies do not balance, None where they do."""
+    return audit.off_balance(run.energy, audit.LOSS if flexible(run.model) else audit.LOSS_RIGID)
+
+
+def cut(run: Result) -> bool:
+    """Whether a run ended since it had no more time."""
+    return run.status.startswith(f"{limit_of(run.model)} of wall time was over")

@@ -273,9 +273,10 @@ ASKED = 3
 # Convention: a prescribed step is compared with twice that step where the run has at least this many steps.
 FEWEST_COMPARED = 4
 
-# [s] Convention: wall time of all passes of a search where `run.limit` is not set; no pass begins that would
-# exceed it. A designer waits a minute for a result, and may set a longer limit.
-PATIENCE = 60.0
+# [s] Convention: wall time of all passes of a search where `run.limit` is not set. No pass begins that would
+# exceed it, and a pass that exceeds it ends where there is a result. A designer waits a minute for a result,
+# of which a little is left for estimates, and may set a longer limit.
+PATIENCE = 55.0
 
 # Derived: a pass takes at least this many times as long as one at twice its step: it has twice the steps.
 TWICE = 2.0

@@ -16,6 +16,7 @@ from mdlgen.model.parameters.machine import center_rows, spring_rows, start_row
 from mdlgen.model.parameters.moving import moving_rows, stops_rows
 from mdlgen.model.parameters.names import NAMED_AXES
 from mdlgen.model.parts.kind import SLACK, BodyRow, Boxes, Drawn, Kind
+from mdlgen.model.parts.roller import FLAT
 from mdlgen.model.parts.words import begins, direction
 from mdlgen.model.press.before import Before
 from mdlgen.model.press.faces import Face, faces_of_plate
@@ -34,6 +35,19 @@ from mdlgen.model.tables import (
 )
 from mdlgen.spec.guide import edge_radii
 from mdlgen.spec.scene import Scene
+
+
+def _lie_over(part: PlanePart, axes: Floats, sheet: SheetPart, face: Floats) -> bool:
+    """Whether a flat sheet is level with a plate and lies over a part of it that has none of its corners;
+    `axes` of the plate, `face` the middle of its face."""
+    if abs(float(part.normal @ sheet.rotation[:, 2])) < 1 - FLAT**2:
+        return False
+    plate = face + (CORNERS * np.array(part.size) / 2) @ axes.T
+    for axis in (*axes.T[:2], *sheet.rotation.T[:2]):
+        one, two = plate @ axis, corners(sheet) @ axis
+        if max(one.min(), two.min()) >= min(one.max(), two.max()):
+            return False
+    return True
 
 
 class _Planes(Kind[PlanePart]):
@@ -124,6 +138,8 @@ class _Planes(Kind[PlanePart]):
         axes = model.bodies.rotation[part.body]
         points = corners(sheet) if sheet.bend is None else corners_of_boxes(model, sheet)
         over = np.all(np.abs((points - face) @ axes[:, :2]) <= np.array(part.size[:2]) / 2, axis=1)
+        if not over.any() and sheet.bend is None and _lie_over(part, axes, sheet, face):
+            over[:] = True  # narrower than the sheet, and level with it
         depth = float(np.max(-((points - face) @ part.normal)[over], initial=0.0))
         return depth if depth < part.size[2] else 0.0
 

@@ -138,7 +138,11 @@ class _Rollers(Kind[RollerPart]):
         if abs(float(part.axis @ normal)) > FLAT or sheet.count == 1:
             return 0.0
         if not balance.covered_shares(sheet, center, part.axis, part.width, True):
-            return 0.0
+            # its axis is beyond the sheet, of which an edge may be in it
+            return max(
+                0.0,
+                float(self.of_boxes(model, np.arange(sheet.first, sheet.first + sheet.count), part).max()),
+            )
         return part.radius + sheet.thickness / 2 - abs(float((center - sheet.center) @ normal))
 
     def contact_depth(self, model: Model, row: int, sheet: SheetPart, part: RollerPart) -> float:

@@ -13,6 +13,11 @@ from mdlgen.bench.campaign.sheets import Drawn, sheet
 SUDDEN = 2.5
 # Surface speed of a retard roller [m/s].
 SLOW, FAST = 0.02, 0.1
+# Length of a retard pad in radii of the feed roller.
+PAD = 1.2
+# Greatest jitter of a pile [mm], and how far its front edge then leads at one side by the greatest turn, of
+# 0.5 deg, in widths.
+JITTER, ASKEW = 0.5, 0.005
 
 
 def _piled(draw: Draw, count: int) -> Drawn:
@@ -28,7 +33,7 @@ def _pile(draw: Draw, count: int, stiff: float, gap: float = 0.0, speed: float |
     if gap:
         made["gap"] = mm(gap)
     if draw.chance(0.6):
-        made["jitter"], made["turn"] = mm(draw.log(0.05, 0.5)), f"{draw.log(0.05, 0.5):g} deg"
+        made["jitter"], made["turn"] = mm(draw.log(0.05, JITTER)), f"{draw.log(0.05, 0.5):g} deg"
         made["seed"] = draw.count(1, 99)
     return made
 
@@ -88,11 +93,13 @@ def retard(draw: Draw) -> Data:
     )
     pick |= {"drive": drive.data, "press": parts.spring(draw, "-z", force)}
     faster = Drive(rounded(drive.speed * draw.even(1.0, 1.1)), drive.ramp)
-    x = lead + max(beyond, radius / 4)
-    # sheets meet the feed roller below its middle, at the height of the upper face of the pile
-    feed_roller = parts.roller(draw, x, 0.0, top + radius - one.thick / 2, radius, width)
+    # the uppermost sheet comes in over the retard part, below the middle of the feed roller; the others begin
+    # before that part, which they would stand in otherwise
+    low = top - 1.25 * one.thick
+    reach = max(0.5 * PAD * radius, math.sqrt(max(2.0 * radius * low - low * low, 0.0)))
+    x = lead + max(beyond, reach + ASKEW * one.width + 2.0 * JITTER)
+    feed_roller = parts.roller(draw, x, 0.0, low + radius, radius, width)
     feed_roller["drive"] = faster.data
-    low = top - one.thick / 2
     rubber = draw.even(0.5, 0.8)
     contacts = [
         draw.contact("pile_*", "pick", stiff=stiff, speed=drive.speed, friction=draw.even(0.9, 1.2)),
@@ -114,7 +121,7 @@ def retard(draw: Draw) -> Data:
     }
     spring = parts.spring(draw, "z", force)
     if draw.chance(0.5):
-        length = rounded(min(1.2 * radius, 2.0 * (x - end) - 0.5))
+        length = rounded(PAD * radius)
         scene["planes"]["retard"] = {
             "center": place(x, 0.0, low - 1.0),
             "normal": "z",
