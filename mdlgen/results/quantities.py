@@ -89,7 +89,7 @@ class Pair:
         return abs(float(self.result.time[-1] - self.other.time[-1])) <= slack
 
     def apart(self, bodies: slice | int) -> Floats:
-        """Positions of bodies in the first run minus those in the second [mm], (t, bodies, 3); one: (t, 3)."""
+        """Position of bodies in the first run minus that in the second [mm], (t, bodies, 3); one: (t, 3)."""
         return self.result.position[self.here, bodies] - self.other.position[self.there, bodies]
 
 
