@@ -56,7 +56,11 @@ class Stored(np.lib.mixins.NDArrayOperatorsMixin):
         keys = key if isinstance(key, tuple) else (key,)
         known = [isinstance(k, (int, np.integer, slice)) for k in keys]
         arrays = [isinstance(k, (list, np.ndarray)) for k in keys]
-        if not all(a or b for a, b in zip(known, arrays, strict=True)) or sum(arrays) > 1:
+        if not all(a or b for a, b in zip(known, arrays, strict=True)):
+            return np.asarray(self)[key]
+        if arrays[:2] == [True, True] and not any(arrays[2:]):
+            return self._paired(*keys)
+        if sum(arrays) > 1:
             return np.asarray(self)[key]
         at = np.arange(self.shape[0])[keys[0]]
         of = np.arange(self.shape[1])[keys[1]] if len(keys) > 1 else np.arange(self.shape[1])
@@ -66,6 +70,13 @@ class Stored(np.lib.mixins.NDArrayOperatorsMixin):
         found = found.reshape(*np.shape(at), *np.shape(of), *self.shape[2:])
         kept = (slice(None),) * (np.ndim(at) + np.ndim(of))
         return found[(*kept, *keys[2:])] if len(keys) > 2 else found
+
+    def _paired(self, one: Any, two: Any, *rest: Any) -> Floats:
+        """At times and of columns that are arrays both, as numpy pairs them."""
+        at, of = np.arange(self.shape[0])[np.asarray(one)], np.arange(self.shape[1])[np.asarray(two)]
+        times, when = np.unique(at, return_inverse=True)
+        columns, where = np.unique(of, return_inverse=True)
+        return self._taken(times, columns)[(when.reshape(at.shape), where.reshape(of.shape), *rest)]
 
     def _taken(self, at: Ints, of: Ints) -> Floats:
         """At some stored times, of some columns."""

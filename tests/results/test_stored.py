@@ -32,7 +32,8 @@ def both() -> tuple[Stored, np.ndarray]:
     [
         -1, slice(None), (slice(None), 2), (-1, 0), (4, slice(0, 3)), (slice(1, 5), [2, 0]), ([5, 0, 3], 2),
         ([1, 4], slice(2)), (slice(None), slice(None), 1), (3, 2, 1), (slice(None), 1, 0), ([0, 3], [0, 2]),
-        np.array([True, False, True, False, True, True]), (..., 0), (slice(None, None, 2), slice(1, 4)), [],
+        np.array([True, False, True, False, True, True]),
+        (np.array([[4], [1]]), np.array([0, 2, 1])), (..., 0), (slice(None, None, 2), slice(1, 4)), [],
     ],
 )  # fmt: skip
 def test_parts(key: object) -> None:

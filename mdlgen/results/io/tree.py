@@ -12,6 +12,7 @@ from mdlgen.model import tables
 from mdlgen.model.parts.kinds import KINDS
 from mdlgen.results.estimates import Estimate
 from mdlgen.results.result import Chaos, Energy
+from mdlgen.results.stored import Stored
 
 # Classes that a file may hold; a name is searched here and nowhere else.
 _CLASSES = {
@@ -22,6 +23,8 @@ _CLASSES = {
     "Estimate": Estimate,
 }
 _TEXT = "model/tables"
+# Stored times and bodies that are compressed together (convention: a tenth of h5py's cache of 1 MiB).
+CHUNK = 64
 _FORMER = ("rollers", "planes", "guides", "meshes")  # parts of the machine in files of older versions
 
 
@@ -43,11 +46,31 @@ class Writer:
         """One array, number or row of bytes, by its path."""
         from h5py import h5d, h5s, h5t  # pyright: ignore[reportAttributeAccessIssue]
 
+        if isinstance(data, Stored) and all(data.shape):
+            self._put_blocks(name, data)
+            return
         array = np.asarray(data, order="C")
         space = h5s.create_simple(array.shape) if array.shape else h5s.create(h5s.SCALAR)
         kind = h5t.py_create(array.dtype, logical=True)
         made = h5d.create(self._file, name.encode("ascii"), kind, space, self._made, self._linked)
         made.write(h5s.ALL, h5s.ALL, array)
+
+    def _put_blocks(self, name: str, stored: Stored) -> None:
+        """One of sheets that come in and leave, some times at once, compressed: rows of a sheet that is not
+        there are all the same, and take next to nothing."""
+        from h5py import h5d, h5p, h5s, h5t  # pyright: ignore[reportAttributeAccessIssue]
+
+        made = h5p.create(h5p.DATASET_CREATE)
+        made.set_obj_track_times(False)
+        made.set_chunk((*(min(CHUNK, n) for n in stored.shape[:2]), *stored.shape[2:]))
+        made.set_shuffle()
+        made.set_deflate(1)
+        space, kind = h5s.create_simple(stored.shape), h5t.py_create(stored.dtype, logical=True)
+        whole = h5d.create(self._file, name.encode("ascii"), kind, space, made, self._linked)
+        for begin in range(0, len(stored), CHUNK):
+            part = np.ascontiguousarray(stored[begin : begin + CHUNK])
+            space.select_hyperslab((begin, *(0 for _ in part.shape[1:])), part.shape)
+            whole.write(h5s.create_simple(part.shape), space, part)
 
 
 def put(file: Any, values: dict[str, Any]) -> None:
