@@ -16,7 +16,7 @@ from mdlgen.results.over_time import series
 from mdlgen.results.passing import came, there
 from mdlgen.results.result import OK
 from mdlgen.results.sensors import MEASURES
-from mdlgen.spec.require import OF_SENSORS, Requirement, requirement
+from mdlgen.spec.require import OF_SENSORS, OF_SHEETS, Requirement, requirement
 from mdlgen.units import parse_unit, same
 
 if TYPE_CHECKING:
@@ -183,8 +183,7 @@ def _judged(result: Result, record: Mapping[str, Any]) -> list[Outcome]:
 
 
 def judged(result: Result, record: Mapping[str, Any], k: int) -> Outcome:
-    """The outcome of the requirement of index k, without doubt. Raises SpecError for a measure that the run
-    has not."""
+    """The outcome of the requirement of index k, without doubt. Raises SpecError as `judge`."""
     wanted = requirement(result.model.require[k])
     try:
         if wanted.event:
@@ -234,30 +233,28 @@ def _event(wanted: Requirement, record: Mapping[str, Any]) -> Outcome:
 def _state(result: Result, record: Mapping[str, Any], wanted: Requirement) -> Outcome:
     """Of a sheet, each of a stream, or a sensor at the end; the value is how many are not so."""
     part = str(wanted.part)
+    streams = dict(result.model.reactions.streams)
+    sheets = [result.model.sheets[k].name for k in streams.get(part, ())]
+    names, key = sheets if part in streams and wanted.state in OF_SHEETS else [part], f"{wanted.state}_ms"
     if wanted.state in OF_SENSORS:
         wrong = [part] if record["sensors"][part]["covered"] == (wanted.state == "clear") else []
-        names = [part]
     else:
-        streams = dict(result.model.reactions.streams)
-        names = [result.model.sheets[k].name for k in streams[part]] if part in streams else [part]
-        key = f"{wanted.state}_ms"
         # one that is there throughout has no times
         wrong = [
             n for n in names if record["sheets"][n].get(key, 0.0 if key == "entered_ms" else None) is None
         ]
     if wanted.negated:
         wrong = [name for name in names if name not in wrong]
-    of = wrong[0] if wrong and len(names) > 1 else None
-    return Outcome(wanted.text, not wrong, float(len(wrong)), "", None, of)
+    first = wrong[0] if wrong and len(names) > 1 else None
+    return Outcome(wanted.text, not wrong, float(len(wrong)), "", None, first)
 
 
 def _limit(result: Result, record: Mapping[str, Any], wanted: Requirement) -> Outcome:
     assert wanted.measure is not None, "a requirement without an event has a measure"
     if wanted.sensor is not None:
         return _at_sensor(record, wanted, wanted.sensor)
-    head, dot, _ = wanted.measure.partition(".")
-    each = head not in record
-    if each and dot:
+    each = (head := wanted.measure.partition(".")[0]) not in record
+    if each and head != wanted.measure:
         _in_each(record, head)
     names = _concerned(result, record, wanted) if each else [None]
     if not names:
