@@ -157,15 +157,24 @@ class Machine:
         return high
 
     def _off(self, eye: Eye, poses: Poses) -> float:
-        return min((float(eye.off(k, poses.of(eye.boxes[k])).min()) for k in self._seen(eye)), default=FAR)
+        least, found = eye.at_least(poses), FAR
+        for k in sorted(self._seen(eye), key=least.__getitem__):
+            if least[k] >= found:
+                break
+            found = min(found, float(eye.off(k, poses.of(eye.boxes[k])).min()))
+        return found
 
     def _seen(self, eye: Eye) -> list[int]:
         """The sheets that a sensor may see now."""
         return eye.sheets if self._there is None else [k for k in eye.sheets if self._there[k]]
 
     def _changes(self, eye: Eye, sight: Sight, poses: Poses) -> bool:
-        off = self._off(eye, poses)
-        return (off < eye.hysteresis if sight.covered else off <= 0.0) != sight.covered
+        least, sees = eye.at_least(poses), False
+        for k in self._seen(eye):
+            if not sees and least[k] < eye.hysteresis:
+                off = float(eye.off(k, poses.of(eye.boxes[k])).min())
+                sees = off < eye.hysteresis if sight.covered else off <= 0.0
+        return sees != sight.covered
 
     def _fastest(self, eye: Eye, poses: Poses) -> float:
         """Speed of what a sensor sees, at most [mm/ms]."""
