@@ -44,7 +44,7 @@ def at_start(model: Model) -> list[bool]:
 def share(model: Model) -> float:
     """The part of a run for which sheets are there, in the mean, about: each goes to the nearest plane beyond
     which it has left at its own speed, or that of the fastest drive. Sheets that lie on each other as the run
-    begins are fed one after another: half of the run each, in the mean. Those that a rule lets in all come."""
+    begins are fed one after another: half of the run each, in the mean. A rule lets all in that it may."""
     end, drive = model.run.duration, max((abs(r.speed or 0.0) * r.radius for r in model.rollers), default=0.0)
     on_sheets = np.flatnonzero(model.contacts.kind == BOX_BOX)
     piled = {part for row in on_sheets for part in (model.contacts.part_a[row], model.contacts.part_b[row])}

@@ -126,8 +126,8 @@ class Eye:
         self._outline = _Outline.of(self)
 
     def at_least(self, poses: Poses) -> dict[int, float]:
-        """A distance [mm] that each sheet is off at least, see `off`: a bound that costs far less; `poses` of all
-        bodies.
+        """A distance [mm] that each sheet is off at least, see `off`: a bound that costs far less; `poses` of
+        all bodies.
 
         The sensor meets the plane of a box on a line along its way, so no nearer than that line is to the
         middle of the box. The separation along sides that are square is the distance over the root of 2 at
