@@ -1,12 +1,8 @@
-"""The cash recycler of samples/recycler.yaml, coarser and with three notes: what its head says of each.
-
-All of it is run before a release: tests/release.txt.
-"""
+"""The cash recycler of samples/recycler.yaml, coarser and with three notes: what its head says of each."""
 
 from __future__ import annotations
 
 import functools
-import time
 from pathlib import Path
 
 import numpy as np
@@ -41,19 +37,6 @@ def test_the_scene_has_no_lints() -> None:
     assert not lints(made := model())
     assert len(made.sheets) == 6 and all(sheet.count == 40 for sheet in made.sheets)
     assert len(Path("samples/recycler.yaml").read_text().splitlines()) < 150
-
-
-def test_all_notes_go_where_they_should() -> None:
-    """Six notes of 40 boxes, as the head of the sample says, in less than 60 s of processor time."""
-    begun = time.process_time()
-    result = mdlgen.solve(model())
-    took = time.process_time() - begun
-    assert result.ok, result.status
-    assert not missed(result), missed(result)
-    went = [(row["sensor"], row["sheet"]) for row in result.reactions if row["kind"] == "covered"]
-    assert [sheet for sensor, sheet in went if sensor == "high"] == ["cassette_3"]
-    assert [sheet for sensor, sheet in went if sensor == "low"] == [f"cassette_{k}" for k in (1, 2, 4, 5)]
-    assert took < 60.0
 
 
 def test_notes_go_where_they_should() -> None:
