@@ -15,7 +15,7 @@ GROUPS = {
         *("transport_4x4", "transport_nips", "transport_4x2", "transport_tilted"),
         *("tilt_correction", "rubber_nip"),
     ),
-    "Machines that react": ("register", "sorter", "duplex"),
+    "Machines that react": ("recycler", "register", "sorter", "duplex"),
     "Channels and guides": ("channel", "guide_joint", "diverter"),
     "Stacks and feeders": (
         *("stack", "pile", "landing", "spring_plate", "retard_pad", "feeder_window", "feeder", "feeder_one"),

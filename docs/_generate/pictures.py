@@ -1,13 +1,15 @@
 """Makes the pictures of the manual: `python docs/_generate/pictures.py [NAME ...]`.
 
-One PNG for each sample, `note`, the animation of README.md, and `start`, a scene before it is run. All of
-them are drawn by mdlgen itself; the drawings of geometry, *.svg, are made by hand.
+One PNG for each sample, `note`, an animation of transport_4x4, and `start`, a scene before it is run.
+`recycler` makes the animation of README.md, too. All of them are drawn by mdlgen itself; the drawings of
+geometry, *.svg, are made by hand.
 """
 
 from __future__ import annotations
 
 import io
 import sys
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -33,11 +35,12 @@ AT = {
     "guide_joint": 20.0,
     "feeder": 400.0,
     "feeder_one": 400.0,
+    "recycler": 262.0,
     "spring_plate": 20.0,
 }
 COLOURS, WIDTH = 48, 640
-# of the animation: the time between two pictures in the run and on the screen [ms], and its width
-EVERY, SHOWN, WIDE = 1.0, 70, 480
+# of an animation: the time between two pictures in the run and on the screen [ms], and its width
+EVERY, SHOWN, WIDE = {"note": 1.0, "recycler": 6.0}, 70, {"note": 480, "recycler": 640}
 
 
 def run(name: str) -> Result:
@@ -66,21 +69,27 @@ def sample(name: str) -> None:
     path.parent.mkdir(parents=True, exist_ok=True)
     image.save(path, optimize=True)
     print(f"{path.relative_to(ROOT)}: {path.stat().st_size // 1000} kB, {time:g} ms")
+    if name in EVERY:
+        animated(name, result)
 
 
 def note() -> None:
     """An animated GIF of transport_4x4."""
-    result = run("transport_4x4")
-    times = np.arange(0.0, float(result.time[-1]) + 1e-9, EVERY)
-    images = drawn(result, times.tolist(), WIDE)
-    # the note begins slow and ends fast: colours of all times
+    animated("note", run("transport_4x4"))
+
+
+def animated(name: str, result: Result) -> None:
+    """An animated GIF of a run; notes that have left lie where they did."""
+    times = np.arange(0.0, float(result.time[-1]) + 1e-9, EVERY[name])
+    images = drawn(replace(result, stays=None), times.tolist(), WIDE[name])
+    # notes begin slow and end fast: colours of all times
     wide, high = images[0].size
     every = Image.new("RGB", (wide, high * len(images)))
     for k, image in enumerate(images):
         every.paste(image, (0, k * high))
     palette = every.quantize(2 * COLOURS, method=Image.Quantize.MAXCOVERAGE, dither=Image.Dither.NONE)
     frames = [image.quantize(palette=palette, dither=Image.Dither.NONE) for image in images]
-    path = TARGET / "note.gif"
+    path = TARGET / f"{name}.gif"
     frames[0].save(
         path, save_all=True, append_images=frames[1:], duration=SHOWN, loop=0, optimize=True, disposal=1
     )

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
-from mdlgen.model.tables import Floats, Ints, Model, SheetPart
+from mdlgen.model.tables import BOX_BOX, Floats, Ints, Model, SheetPart
 
 if TYPE_CHECKING:
     from mdlgen.spec.sheet import Sheet
@@ -43,13 +43,19 @@ def at_start(model: Model) -> list[bool]:
 
 def share(model: Model) -> float:
     """The part of a run for which sheets are there, in the mean, about: each goes to the nearest plane beyond
-    which it has left at its own speed, or that of the fastest drive. One that a rule lets in counts as there
-    from the start."""
+    which it has left at its own speed, or that of the fastest drive. Sheets that lie on each other as the run
+    begins are fed one after another: half of the run each, in the mean. A rule lets all in that it may."""
     end, drive = model.run.duration, max((abs(r.speed or 0.0) * r.radius for r in model.rollers), default=0.0)
+    on_sheets = np.flatnonzero(model.contacts.kind == BOX_BOX)
+    piled = {part for row in on_sheets for part in (model.contacts.part_a[row], model.contacts.part_b[row])}
     stays = 0.0
     for sheet in model.sheets:
+        speed = float(np.linalg.norm(sheet.velocity))
+        if sheet.name in piled and sheet.enters == 0.0 and speed == 0.0:
+            stays += 0.5 * end
+            continue
         begun = 0.0 if math.isnan(sheet.enters) else min(sheet.enters, end)
-        fast = max(float(np.linalg.norm(sheet.velocity)), drive)
+        fast = max(speed, drive)
         rotation = model.bodies.rotation.reshape(-1, 9)
         ways = -far(model, sheet, model.bodies.position, rotation)
         stays += min(end - begun, float(ways.min()) / fast) if ways.size and fast > 0.0 else end - begun

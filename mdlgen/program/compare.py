@@ -66,6 +66,7 @@ RATTLING: dict[str, tuple[str, ...]] = {
     "peel": ("run.duration=4 ms",),
     "pick": (),
     "pile": ("run.duration=5 ms",),
+    "recycler": ("run.duration=10 ms", "sheets.note.boxes=[8,1]"),
     "retard": ("run.duration=60 ms",),
     "retard_pad": (),
     "spring_plate": (),

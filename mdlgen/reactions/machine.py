@@ -168,7 +168,12 @@ class Machine:
         return high
 
     def _off(self, eye: Eye, poses: Poses) -> float:
-        return min((float(eye.off(k, poses.of(eye.boxes[k])).min()) for k in self._seen(eye)), default=FAR)
+        least, found = eye.at_least(poses), FAR
+        for k in sorted(self._seen(eye), key=least.__getitem__):
+            if least[k] >= found:
+                break
+            found = min(found, _nearest(eye, k, poses))
+        return found
 
     def _seen(self, eye: Eye) -> list[int]:
         """The sheets that a sensor may see now."""
@@ -176,8 +181,12 @@ class Machine:
         return eye.sheets if there is None else [k for k in eye.sheets if there[k]]
 
     def _changes(self, eye: Eye, sight: Sight, poses: Poses) -> bool:
-        off = self._off(eye, poses)
-        return (off < eye.hysteresis if sight.covered else off <= 0.0) != sight.covered
+        least, sees = eye.at_least(poses), False
+        for k in self._seen(eye):
+            if not sees and least[k] < eye.hysteresis:
+                off = _nearest(eye, k, poses)
+                sees = off < eye.hysteresis if sight.covered else off <= 0.0
+        return sees != sight.covered
 
     def _fastest(self, eye: Eye, poses: Poses) -> float:
         """Speed of what a sensor sees, at most [mm/ms]."""
@@ -264,12 +273,13 @@ class Machine:
         return self._edge(k, began + time, at(time))
 
     def _edge(self, k: int, time: float, poses: Poses) -> _Edge:
-        eye = self._eyes[k]
-        near = min(
-            self._seen(eye) or eye.sheets,
-            key=lambda sheet: float(eye.off(sheet, poses.of(eye.boxes[sheet])).min()),
-        )
-        return _Edge(k, near, time, poses)
+        eye, there = self._eyes[k], self._seen(self._eyes[k])
+        among = there or eye.sheets
+        if self._stage.sights[k].covered and self._before is not None:
+            were = [sheet for sheet in eye.sheets if _nearest(eye, sheet, self._before[1]) < eye.hysteresis]
+            # one that has left the machine since clears it, too
+            among = [sheet for sheet in were if sheet in there] or were or among
+        return _Edge(k, min(among, key=lambda sheet: _nearest(eye, sheet, poses)), time, poses)
 
     def _see(self, edge: _Edge) -> None:
         """Takes over what a sensor sees, and notes it."""
@@ -377,6 +387,11 @@ class Machine:
         self._before = None if before is None else (before[0], Poses(*map(np.array, before[1:])))
         self._stays.restore(kept["stays"])
         self.log = list(kept["log"])
+
+
+def _nearest(eye: Eye, sheet: int, poses: Poses) -> float:
+    """How far a sheet is from where a sensor sees it [mm], see Eye.off; `poses` of all bodies."""
+    return float(eye.off(sheet, poses.of(eye.boxes[sheet])).min())
 
 
 def in_words(order: Order, turns: bool = False) -> str:

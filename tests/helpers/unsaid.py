@@ -8,6 +8,11 @@ UNSAID: dict[str, tuple[str, ...]] = {
     "landing": ("contacts.landing.air=null",),
     "duplex": ("rules=[]", "require=[]"),
     "crease": ("materials.eur10.yield=null",),
+    "recycler": (
+        *("rules=[]", "sheets.note.out=[]", "guides.gate.pivot=null", "rollers.retard.limiter=null"),
+        *("piles.cassette.contact.friction=0.3", "sheets.note.boxes=[4,1]"),
+        "shafts.main={rollers: {lower_1: 1, lower_2: 1}, drive: {speed: 200 rad/s}}",
+    ),
     "register": ("rules=[]",),
     "sorter": (
         "rules=[]",

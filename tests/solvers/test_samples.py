@@ -51,6 +51,17 @@ PIECES = {
     ("crease", "exudyn"): ("sheets.strip.boxes=[10,1]", "run.duration=1 ms", "run.tolerance=0.01"),
     # to where the nips stop; tests/solvers/test_reacting.py looks at both solvers
     ("register", "exudyn"): ("sheets.note.boxes=[5,2]", "run.duration=34 ms", "run.tolerance=0.02"),
+    # the first 12 ms of two notes; tests/solvers/test_recycler.py runs all of it, coarser
+    ("recycler", "auto"): (
+        *("sheets.note.boxes=[8,1]", "piles.cassette.count=2"),
+        *("run.duration=12 ms", "run.step=0.05 ms"),
+    ),
+    # without what Exudyn does not have: speed control, friction that sticks, sheets that leave at rest
+    ("recycler", "exudyn"): (
+        *("sheets.note.boxes=[4,1]", "piles.cassette.count=2", "sheets.note.out=[]", "run.duration=2 ms"),
+        *("shafts.main={rollers: {lower_1: 1, lower_2: 1}, drive: {speed: 200 rad/s}}",),
+        "piles.cassette.contact.friction=0.3",
+    ),
     # all of it, coarser, in tests/solvers/test_reacting_samples.py
     ("sorter", "auto"): ("run.duration=40 ms",),
     ("sorter", "exudyn"): ("sheets.note.boxes=[4,1]", "run.duration=10 ms", "run.tolerance=0.05"),

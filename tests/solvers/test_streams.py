@@ -141,6 +141,16 @@ run: {duration: 100 ms, step: 0.1 ms}
     assert result.summary()["sheets"]["note"]["left_ms"] == left
 
 
+def test_a_sheet_that_leaves_in_front_of_a_sensor_clears_it() -> None:
+    """Not the next one, which is 20 mm away then."""
+    eye = "sensors={eye: {beam: [[46 mm, 0 mm, 5 mm], [46 mm, 0 mm, -15 mm]]}}"
+    result = mdlgen.solve(model(THROWN, eye, "run.duration=60 ms"), "lattice")
+    seen = [(row["kind"], row["sheet"]) for row in result.reactions]
+    assert seen == [("covered", "shot_1"), ("cleared", "shot_1")]
+    # it looks a thousandth of a step later
+    assert result.reactions[1]["time_ms"] == pytest.approx(float(result.stays[0, 1]), abs=2e-4)
+
+
 def test_a_rule_lets_sheets_in() -> None:
     shot = "streams={shot: {of: block, by_rule: true, count: 2, out: beyond z = -10 mm}}"
     made = model(THROWN, shot, "run.duration=60 ms")
