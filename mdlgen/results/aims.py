@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
-from functools import partial
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -17,10 +15,16 @@ if TYPE_CHECKING:
 def aimed(result: Result, roller: RollerPart, time: Floats) -> Floats:
     """Target speed of a driven roller, or of the shaft of its clutch, at times [ms], (n,) [rad/ms]. At a jump
     it is the speed after the jump."""
-    law = roller.prescribed
-    for order in _orders(result, roller):
-        law = partial(_from_then_on, law, *order)
-    return np.asarray(law(time))
+    speed, orders = np.asarray(roller.prescribed(time)), _orders(result, roller)
+    begins = np.array([begin for begin, _, _ in orders])
+    # the speed at which each order finds the drive: by the law and by the orders before it
+    found = np.asarray(roller.prescribed(begins))
+    for k, (begin, target, ramp) in enumerate(orders):
+        for moments, speeds in ((begins[k + 1 :], found[k + 1 :]), (time, speed)):
+            later = moments >= begin
+            share = np.clip((moments[later] - begin) / ramp, 0.0, 1.0) if ramp > 0.0 else 1.0
+            speeds[later] = found[k] + share * (target - found[k])
+    return speed
 
 
 def corners_of(result: Result, roller: RollerPart) -> Floats:
@@ -30,15 +34,6 @@ def corners_of(result: Result, roller: RollerPart) -> Floats:
         now = float(np.interp(begin, found[:, 0], found[:, 1]))
         found = np.vstack([found[found[:, 0] < begin], [[begin, now], [begin + ramp, target]]])
     return found
-
-
-def _from_then_on(
-    before: Callable[[Floats], Floats], begin: float, target: float, ramp: float, time: Floats
-) -> Floats:
-    """A speed law that follows `before` until `begin`, then ramps to a target."""
-    now = float(before(np.array([begin]))[0])
-    share = np.clip((time - begin) / ramp, 0.0, 1.0) if ramp > 0.0 else 1.0
-    return np.where(time >= begin, now + share * (target - now), before(time))
 
 
 def _orders(result: Result, roller: RollerPart) -> list[tuple[float, float, float]]:
