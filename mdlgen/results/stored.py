@@ -86,10 +86,12 @@ class Stored(np.lib.mixins.NDArrayOperatorsMixin):
             block, mine = self._blocks[k], np.flatnonzero(number == k)
             own, end = self._place[of[mine]], block.first + len(block.rows)
             early, late = at < block.first, at >= end
-            found[np.ix_(early, mine)] = block.before[own]
-            found[np.ix_(late, mine)] = block.after[own]
             here = ~early & ~late
-            found[np.ix_(here, mine)] = block.rows[at[here] - block.first][:, own]
+            part = found if len(mine) == len(of) else np.empty((len(at), len(mine), *self.shape[2:]))
+            part[early], part[late] = block.before[own], block.after[own]
+            part[here] = block.rows[at[here] - block.first][:, own]
+            if part is not found:
+                found[:, mine] = part
         return found
 
     def __array__(self, dtype: Any = None, copy: bool | None = None) -> Floats:
