@@ -10,7 +10,7 @@ from mdlgen.lints.lint import Lint
 from mdlgen.model.moved import BEYOND, displaced
 from mdlgen.model.overlaps.parts import HAIR
 from mdlgen.model.parts.kinds import kind_of
-from mdlgen.model.tables import Floats, GuidePart, MachinePart, Model, MovingPart
+from mdlgen.model.tables import Floats, GuidePart, MachinePart, Model, MovingPart, SheetPart
 
 _STATIONS = 25  # places between both ends at which a part is checked
 _FACING = 0.99  # cosine: a sheet passes a face that is square to its path on neither side
@@ -73,12 +73,18 @@ def turned_away(model: Model) -> Iterator[Lint]:
     """Straight guides that move, are touched on one side, and show their back to all that comes by."""
     table = model.contacts
     met = {frozenset(pair) for pair in zip(table.part_a, table.part_b, strict=True)}
+    bends = [guide.name for guide in model.guides if guide.radius > 0.0]
+
+    def met_by(sheet: SheetPart) -> bool:
+        """True if a sheet goes through a bend, so that it does not continue straight."""
+        return any(frozenset((sheet.name, bend)) in met for bend in bends)
+
     for gate, motion in model.gates:
         if motion.free or not isinstance(gate, GuidePart) or gate.side not in ("left", "right"):
             continue
         sheets = [sheet for sheet in model.sheets if frozenset((gate.name, sheet.name)) in met]
-        if not all(np.any(sheet.velocity) for sheet in sheets):
-            continue  # where it goes is not known
+        if not all(np.any(sheet.velocity) and not met_by(sheet) for sheet in sheets):
+            continue  # its path is not known
         along, normal = gate.axes[:, 0], gate.axes[:, 1] * (1.0 if gate.side == "left" else -1.0)
         line = gate.center + np.linspace(-0.5, 0.5, len(_SHARES))[:, None] * gate.length * along
         places = np.unique([0.0, *motion.ends, *motion.places])

@@ -47,11 +47,11 @@ def share(model: Model) -> float:
     begins are fed one after another: half of the run each, in the mean. A rule lets all in that it may."""
     end, drive = model.run.duration, max((abs(r.speed or 0.0) * r.radius for r in model.rollers), default=0.0)
     on_sheets = np.flatnonzero(model.contacts.kind == BOX_BOX)
-    piled = {part for row in on_sheets for part in (model.contacts.part_a[row], model.contacts.part_b[row])}
+    stacked = {part for row in on_sheets for part in (model.contacts.part_a[row], model.contacts.part_b[row])}
     stays = 0.0
     for sheet in model.sheets:
         speed = float(np.linalg.norm(sheet.velocity))
-        if sheet.name in piled and sheet.enters == 0.0 and speed == 0.0:
+        if sheet.name in stacked and sheet.enters == 0.0 and speed == 0.0:
             stays += 0.5 * end
             continue
         begun = 0.0 if math.isnan(sheet.enters) else min(sheet.enters, end)

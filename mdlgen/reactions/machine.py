@@ -24,6 +24,7 @@ from mdlgen.reactions.known import of_states
 from mdlgen.reactions.sensing import FAR, Eye, Passing, Poses, between
 from mdlgen.reactions.sight import Sight
 from mdlgen.reactions.stays import Stays
+from mdlgen.reactions.wording import in_words
 from mdlgen.units import PER_SECOND
 
 # An event less than this part of a step ahead counts as reached: times are found to that accuracy
@@ -392,23 +393,6 @@ class Machine:
 def _nearest(eye: Eye, sheet: int, poses: Poses) -> float:
     """How far a sheet is from where a sensor sees it [mm], see Eye.off; `poses` of all bodies."""
     return float(eye.off(sheet, poses.of(eye.boxes[sheet])).min())
-
-
-def in_words(order: Order, turns: bool = False) -> str:
-    """The text of an order for a message; `turns`: its place is an angle."""
-    if order.kind == "speed":
-        ramp = f" in {order.ramp:g} ms" if order.ramp else ""
-        return f"{order.name} to {order.value * PER_SECOND:.6g} rad/s{ramp}"
-    if order.kind == "press":
-        return f"{order.name} pressed by {order.value:.6g} N"
-    if order.kind == "torque":
-        return f"arm of {order.name} to {order.value:.6g} N*mm"
-    if order.kind == "move":
-        place = f"{math.degrees(order.value):.6g} deg" if turns else f"{order.value:.6g} mm"
-        return f"{order.name} moves to {place} in {order.ramp:g} ms"
-    if order.kind == "enter":
-        return f"the next sheet of {order.name} comes in"
-    return f"go to {order.name}" if order.kind == "go" else "end"
 
 
 def _number(value: float) -> float | None:

@@ -198,7 +198,9 @@ def test_air_counts() -> None:
 
 
 def test_sheets_that_a_rule_lets_in_count() -> None:
+    # with so many boxes that rules and storage take little of the time
     sets = ["sensors={}", "require=[]", "rules=[{when: time >= 0 ms, do: {enter: infeed}}]"]
+    sets += ["sheets.note.boxes=[20,20]"]
     one, three = (
         cost(lower(load(samples() / "sorter.yaml", [*sets, f"streams.infeed.count={k}"]))) for k in (1, 3)
     )

@@ -22,7 +22,10 @@ import mdlgen
 from mdlgen.backends import motionsolve, msolve
 from mdlgen.backends.msolve.reader import standin
 from mdlgen.errors import SpecError
+from mdlgen.model.lower import lower
+from mdlgen.paths import samples
 from mdlgen.registry import emitter
+from mdlgen.spec.load import loads
 
 # Script and deck come from the same tables by a few operations in another order: some ulp remain.
 RELATIVE = 1e-12
@@ -212,7 +215,8 @@ def test_the_forms_are_those_of_the_reference() -> None:
             own = {k for k, v in form.keywords.items() if v.confidence == confidence}
             assert set(re.findall(r"`(\w+)`", column)) == own, name
         assert form.page in source, name
-    texts = [*map(script_of, CASES), msolve.emit(model_of(*CLUTCHES))]
+    gates = loads((ROOT / "tests" / "cases" / "stops.yaml").read_text(), "stops", folder=samples())
+    texts = [*map(script_of, CASES), msolve.emit(model_of(*CLUTCHES)), msolve.emit(lower(gates))]
     used = {
         (type(thing).__name__, k)
         for text in texts
