@@ -52,6 +52,7 @@ from mdlgen.spec.parameter import (
 )
 from mdlgen.spec.part import Part
 from mdlgen.spec.pile import Pile
+from mdlgen.spec.pile import names_of as sheets_of
 from mdlgen.spec.quantities import default
 from mdlgen.spec.rule import Rule
 from mdlgen.spec.run import Run
@@ -301,6 +302,7 @@ class Scene(Strict):
         sheets = value.get("sheets")
         if isinstance(sheets, dict):
             of = {some.of for some in (*scene.piles.values(), *scene.streams.values())}
+            of |= {sheet for name, pile in scene.piles.items() for sheet in sheets_of(name, vars(pile))}
             scene._sheets_of_piles = {name: sheet for name, sheet in sheets.items() if name in of}
         if made:
             scene._source = Source(Document(value, {}, {}, scene.name), PYTHON)

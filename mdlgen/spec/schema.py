@@ -55,8 +55,19 @@ def json_schema() -> dict[str, Any]:
         "allOf": [
             _unless_default(schema, "contacts", "Contact"),
             _unless_default(schema, "rollers", "Roller"),
+            _unless_pile(schema),
         ],
     }
+
+
+def _unless_pile(schema: dict[str, Any]) -> dict[str, Any]:
+    """Moves the required keys of a sheet to scenes without `piles`: with them an entry may be a part of what
+    a pile makes, `stack_2: {turn: 2 deg}`."""
+    part = schema["$defs"]["Sheet"]
+    ways = part.pop("oneOf")
+    part["oneOf"] = [*ways, {"not": {"anyOf": ways}}]  # of several ways to give the mass no two at once
+    whole = {"required": part.pop("required"), "anyOf": ways}
+    return {"if": {"required": ["piles"]}, "else": _each("sheets", whole)}
 
 
 def _unless_default(schema: dict[str, Any], kind: str, model: str) -> dict[str, Any]:
