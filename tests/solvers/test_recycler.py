@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import functools
-from pathlib import Path
 
 import numpy as np
 import pytest
@@ -12,6 +11,7 @@ import mdlgen
 from mdlgen.backends.lattice.run import solve
 from mdlgen.checks import lints
 from mdlgen.model.tables import Model
+from mdlgen.paths import samples
 from mdlgen.results.result import Result
 
 FEW = (
@@ -21,7 +21,7 @@ FEW = (
 
 
 def model(*sets: str) -> Model:
-    return mdlgen.lower(mdlgen.load("samples/recycler.yaml", list(sets)))
+    return mdlgen.lower(mdlgen.load(samples() / "recycler.yaml", list(sets)))
 
 
 @functools.cache
@@ -36,7 +36,7 @@ def missed(result: Result) -> list[str]:
 def test_the_scene_has_no_lints() -> None:
     assert not lints(made := model())
     assert len(made.sheets) == 6 and all(sheet.count == 40 for sheet in made.sheets)
-    assert len(Path("samples/recycler.yaml").read_text().splitlines()) < 150
+    assert len((samples() / "recycler.yaml").read_text().splitlines()) < 150
 
 
 def test_notes_go_where_they_should() -> None:
