@@ -23,7 +23,8 @@ def find(model: Model, system: System) -> Mirror | None:
     A scene without contacts is not halved: solved as a whole it conserves its momentum to round-off, but one
     half alone would not. Nor are scenes with air between sheets, measured friction, motors, limiters or
     shafts; with friction that sticks between a sheet and a roller that the plane cuts; with Poisson's effect,
-    which couples boxes on both sides of the plane; with parts that turn about a pivot or slide; with stops.
+    which couples boxes on both sides of the plane; with parts that turn about a pivot or slide; with stops;
+    with loads or gravity that change over time.
 
     The plane passes through the middle of the sheets, between boxes and parallel to an edge. The check
     compares bodies, their supports and drives, contacts, loads, and the forces of joints in a random state.
