@@ -1,7 +1,7 @@
-"""The part of a System that is awake. Sleeping sheets are fixed parts in it; sheets that have not come yet,
-or have left, are omitted.
+"""Reduces a System to what its steps have to solve. Sleeping sheets become fixed parts; sheets that have not
+entered yet, or have left, are omitted.
 
-As with a scene that is halved (symmetry.mirror), the same kernels run on fewer nodes, joints and pairs.
+The same kernels run on fewer nodes, joints and pairs, as for a halved scene (symmetry.mirror).
 Bodies keep their numbers, contacts their rows.
 """
 
@@ -48,7 +48,8 @@ class Parts:
 
 
 def _held(held: np.ndarray, pairs: np.ndarray, chosen: Ints) -> np.ndarray:
-    """Pairs in patches that are among the `chosen` ones; stores their numbers in `pairs`."""
+    """Rows of `held`, the pairs in contact patches, that are among the `chosen` pairs. They get the numbers
+    that the chosen pairs have in `pairs`; the column "held" there is set to row + 1, or 0 for no patch."""
     if not len(held):
         return held
     place = np.full(int(max(held["pair"].max(), chosen.max(initial=0))) + 1, -1)
@@ -61,8 +62,9 @@ def _held(held: np.ndarray, pairs: np.ndarray, chosen: Ints) -> np.ndarray:
 
 
 def _changing(changes: Changing, loads: NDArray[np.bool_]) -> Changing:
-    """What changes of those of the loads alone that are left, by the rows that these have then."""
-    left = np.append(loads, True)  # the last one is gravity, -1
+    """The Changing of the remaining loads, with their new row numbers. `loads` is true for each load that
+    remains."""
+    left = np.append(loads, True)  # the last entry is that of gravity, whose row is -1
     rows = np.append(np.cumsum(loads) - 1, GRAVITY)
     acts = changes.acts[left[changes.acts["load"]]]
     acts["load"] = rows[acts["load"]]
@@ -105,7 +107,7 @@ def awake(
     for region in search.regions[regions]:
         for end in "ab":
             met[region[end] : region[end] + region["many_" + end]] = True
-    sleeps = np.append(asleep, False)[parts.sheet_of]  # the last one is for bodies without a sheet
+    sleeps = np.append(asleep, False)[parts.sheet_of]  # the last entry is for bodies of no sheet, -1
     acts = ~sleeps[system.loads["body"]]
     return (
         system._replace(

@@ -30,7 +30,7 @@ PASSED, OVERLAPPED, LIMITED, CRAWLED, RUNAWAY, TAKEN = -1, -2, -3, -4, -5, -6
 
 
 class Ended(NamedTuple):
-    """What steps had as a run ended."""
+    """State of the steps as a run ended."""
 
     system: System
     bodies: There  # that it has
@@ -106,7 +106,7 @@ def reason_of(
 
 
 def limited(model: Model, t: float) -> str:
-    """The reason of a pass that ended at a time [ms] since it had no more."""
+    """The reason of a pass that ended at a time [ms] because its wall time was over."""
     return f"{limit_of(model)} of wall time was over at {t:.6g} ms"
 
 
@@ -129,10 +129,10 @@ def unbalanced(run: Result) -> str | None:
 
 
 def off_balance(run: Result) -> str | None:
-    """By how much a run's energies do not balance, None where they do."""
+    """Text with the error of a run's energy balance, or None if energies balance."""
     return audit.off_balance(run.energy, audit.LOSS if flexible(run.model) else audit.LOSS_RIGID)
 
 
 def cut(run: Result) -> bool:
-    """Whether a run ended since it had no more time."""
+    """True if a run ended because its wall time was over."""
     return run.status.startswith(f"{limit_of(run.model)} of wall time was over")

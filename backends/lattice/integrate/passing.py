@@ -39,12 +39,12 @@ class Passing:
         return ~self._sleep.gone if self.active else None
 
     def enter(self, sheet: int, t: float) -> None:
-        """Lets a sheet that has not come yet come in at a time [ms], not before the present one."""
+        """Sets the time [ms], not in the past, at which a sheet that has not entered yet comes in."""
         if math.isnan(self.stays[sheet, 0]):
             self.enters[sheet] = t
 
     def enter_next(self, sheets: Iterable[int], t: float) -> None:
-        """Lets the first of these sheets that has no time yet come in at a time [ms]."""
+        """Sets the time [ms] at which the first of these sheets that has no such time yet comes in."""
         for sheet in sheets:
             if math.isnan(self.stays[sheet, 0]) and math.isinf(self.enters[sheet]):
                 self.enter(sheet, t)
@@ -100,7 +100,7 @@ class Passing:
         return far(self._model, self._model.sheets[k], x, r, self._overlaps.solved)
 
     def turn(self, t: float) -> bool:
-        """Lets sheets leave and come in whose time is t; False: one cannot, see `taken`."""
+        """Removes and adds the sheets whose time is t. Returns False if one cannot come in, see `taken`."""
         if not self.active:
             return True
         sleep, leaves = self._sleep, self._leaving()

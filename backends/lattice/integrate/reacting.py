@@ -87,7 +87,7 @@ class Reacting:
         work, sleep = self._sleep.work, self._sleep
         x, r, rates, spins = sleep.whole.motion(work.state, work.mid.motion)
         u, w, nodes = rates.copy(), spins.copy(), sleep.there.whole(sleep.system.nodes)
-        u[self._boxes] = w[self._boxes] = 0.0  # but for what is awake
+        u[self._boxes] = w[self._boxes] = 0.0  # awake boxes are set next
         u[nodes], w[nodes] = work.state.u[:, :3], work.state.u[:, 3:]
         return Poses(x, r, u, w)
 

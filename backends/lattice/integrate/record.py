@@ -46,7 +46,8 @@ from mdlgen.results.passing import CAME, LEFT
 from mdlgen.results.result import ContactStatistics, Energy, Result
 from mdlgen.version import if_there
 
-NOW = [FORCE_NOW, *range(TURNING_NOW, TURNING_NOW + TURNING)]  # of the rows of contacts: PRESSES, TURNS
+# Columns of Kept.rows to store, in the order PRESSES, TURNS: of the last step; of the start of a call.
+NOW = [FORCE_NOW, *range(TURNING_NOW, TURNING_NOW + TURNING)]
 BEGUN = [FORCE_BEGUN, *range(TURNING_BEGUN, TURNING_BEGUN + TURNING)]
 
 
@@ -59,9 +60,9 @@ class Snapshot(NamedTuple):
     rows: np.ndarray
     marks: np.ndarray
     work: np.ndarray
-    # of groups of parts: first and last, (groups, 3), and the most of kinetic and elastic together, (groups,)
+    # of each group of parts: first and last energies, (groups, 3); greatest kinetic + elastic one, (groups,)
     energies: tuple[np.ndarray, np.ndarray, np.ndarray]
-    booked: np.ndarray  # of what came in, and of what left, (2, groups, 3)
+    booked: np.ndarray  # energies of sheets that came in, and that left, (2, groups, 3)
     stays: np.ndarray | None  # see Recorder
 
 
@@ -69,39 +70,39 @@ class Recorder:
     """Stores states of a run; `kept`: the sums of the compiled code."""
 
     def __init__(self, model: Model, system: System, work: Workspace, whole: Whole, outputs: int = 0):
-        """`whole`: where all bodies are, with those that are not in `work`."""
+        """`whole`: places of all bodies, including those that are not in `work`."""
         self.whole = whole
         self._parts = {p.name: int(work.islands.part[whole.there.number(p.body)]) for p in model.machine}
         self.model, self.system, self.kept, self.work = model, system, work.kept, work
         self._asleep = np.zeros((groups(work), 3))
-        # with sheets that come in or leave, those that are there alone
+        # if sheets come in or leave, only the states of those in the machine are stored
         passes = passing(model)
         self._states: States | StatesThere = (
             StatesThere(model, system.mirror) if passes else States(model, system.mirror, outputs + 1)
         )
         self._forces: list[np.ndarray] = []
-        self._plastic: list[np.ndarray] = []  # see hinges.plastic_rows; of elastic scenes none
+        self._plastic: list[np.ndarray] = []  # see hinges.plastic_rows; empty for elastic scenes
         self._behind: list[np.ndarray] = []  # see Result.behind
         self._axles = [system.bodies["spin"][r.body] for r in model.rollers if r.axle is not None]
         self._times: list[float] = []
         self._energies = np.zeros((2, groups(work), 3))  # first and last
         self._most = np.zeros(groups(work))
-        # energies that came in and that left with sheets, (2, groups, 3)
+        # energies of sheets that came in, and of those that left, (2, groups, 3)
         self.booked = np.zeros((2, groups(work), 3))
-        # when each sheet came in and left [ms], nan: it did not, (sheets, 2); None: none does
+        # times at which each sheet came in and left [ms], nan: not yet, (sheets, 2); None: no sheet ever does
         self.stays: np.ndarray | None = None
 
     def follow(self, work: Workspace, asleep: np.ndarray) -> None:
-        """Uses these arrays, of the awake part of the System, from now on; `asleep` (groups, 3): energies of
-        the other part."""
+        """Replaces the arrays by those of a new awake part of the System; `asleep` (groups, 3): energies of
+        the sleeping part."""
         self.work, self._asleep = work, asleep
 
     def widen(self, model: Model, system: System, kept: Kept) -> None:
-        """Uses the pairs of this Model from now on; `system`: the whole System that is solved."""
+        """Replaces the pairs by those of this Model; `system`: the whole System that is solved."""
         self.model, self.system, self.kept = model, system, kept
 
     def store(self, t: float) -> None:
-        """The state at the end of a step."""
+        """Stores the state at the end of a step."""
         from mdlgen.backends.lattice.kernels.integrate import observe
 
         energies, rows = np.zeros_like(self._asleep), np.zeros_like(self.kept.rows)
@@ -120,8 +121,8 @@ class Recorder:
             self.kept.rows[:, NOW] = rows[:, NOW]
             # a contact at the start may have opened in the middle of the first step
             self.kept.rows[:, [MAX_FORCE, MAX_DEPTH]] = rows[:, [FORCE_NOW, DEPTH_NOW]]
-        # forces of the middle of the last step, where the rule evaluates them, until the next step allows to
-        # interpolate those at its end; at the start, those of the start
+        # The rule evaluates forces in the middle of a step, so these are half a step old. After the next step
+        # `between` interpolates those at the end of this one. At the start these are the forces at the start.
         self._forces.append(self.kept.rows[:, NOW])
         if len(self.model.plastic):
             self._plastic.append(plastic_rows(self.system.yields))
@@ -129,7 +130,7 @@ class Recorder:
             self._behind.append(state.s[self._axles])
 
     def _there(self) -> NDArray[np.bool_]:
-        """Which sheets are, (sheets,)."""
+        """True for each sheet that is in the machine, (sheets,)."""
         if self.stays is None:
             return np.array(at_start(self.model))
         return ~np.isnan(self.stays[:, CAME]) & np.isnan(self.stays[:, LEFT])
@@ -140,8 +141,8 @@ class Recorder:
         return self._times[-1]
 
     def between(self) -> None:
-        """Replaces the forces at the last stored state, after the next step, by those interpolated from
-        both."""
+        """Replaces the forces of the last stored state by interpolated ones. Called after the next step: then
+        forces are known in the middle of the steps before and after that state."""
         self._forces[-1] = self.kept.rows[:, BEGUN]
 
     def arrays(self) -> dict[str, np.ndarray]:
@@ -172,7 +173,7 @@ class Recorder:
             self.booked[:], self.stays[:] = arrays["booked"], arrays["stays"]
 
     def _rotations(self, times: int) -> np.ndarray:
-        """Plastic rotations at the first `times` times, and the energy that they took, (times, rows + 1)."""
+        """Plastic rotations at the first `times` times, and their dissipated energy, (times, rows + 1)."""
         return np.array(self._plastic[:times]).reshape(times, len(self.model.plastic) + 1)
 
     def _lags(self, times: int) -> np.ndarray:

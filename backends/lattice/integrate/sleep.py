@@ -228,7 +228,7 @@ class Sleep:
         state = old.state._replace(x=x, r=r, v=v, l=l, u=u)
         mid.motion.x[:], mid.motion.r[:] = state.x, state.r
         bodies = self._whole.nodes[sheets[self._whole.sheets]]
-        # nothing awake touches sheets that fall asleep; those that slept before keep their missed impulses
+        # no awake sheet touches sheets that fall asleep now; earlier sleepers keep their missed impulses
         missed = np.zeros((len(self._whole.bodies), 6))
         missed[before.whole(old.asleep.bodies)] = old.asleep.missed
         rows = self._parts.lasting(sheets)
@@ -251,7 +251,7 @@ class Sleep:
         acts = self.work.kept.rows[:, ACTS] != 0.0
         islands = self._islands(acts)
         woken = np.isin(islands, islands[left]) & self._sheets
-        if woken.any():  # what lay on it, too
+        if woken.any():  # sheets that lay on it wake, too
             self._since[woken], self._counted[woken] = t, self.steering.counters[STEPS]
             self._turn(self._sheets & ~woken, t)
         rows, own = self.work.kept.rows, self._parts.of(left)
@@ -275,7 +275,7 @@ class Sleep:
             self._store[name][self._whole.nodes] = array
 
     def _motion(self) -> Motion:
-        """Of all bodies."""
+        """Motion of all bodies."""
         return self.whole.motion(self.work.state, self.work.mid.motion)
 
     def _meet(self, rows: NDArray[np.bool_]) -> None:

@@ -23,8 +23,8 @@ class States:
     """Places x [mm], velocities u, w [mm/ms, rad/ms] and Euler parameters e at `count` times."""
 
     def __init__(self, model: Model, mirror, room: int):
-        """`mirror` shows the bodies that are not solved for, None: there are none; `room`: times, of which
-        there may be more."""
+        """`mirror`: places the bodies that symmetry eliminates, None: none are; `room`: expected number of
+        times, which may be exceeded."""
         self._model, self._mirror = model, mirror
         bodies = len(model.bodies.name)
         self._arrays: dict[str, Floats] = {k: np.empty((room, bodies, n)) for k, n in WIDTHS.items()}
@@ -74,7 +74,7 @@ class States:
         return found | {"e": without_jumps(found["e"])}
 
     def first(self, times: int) -> dict[str, Floats]:
-        """Copies of the arrays of the first states, while the run may go on."""
+        """Copies of the arrays of the first states; the run may continue meanwhile."""
         (whole, turned), arrays = self._ready, self._arrays
         found = {name: array[:times].copy() for name, array in arrays.items()}
         if times > whole:
@@ -82,7 +82,7 @@ class States:
         return found | {"e": without_jumps(found["e"])}
 
     def kept(self) -> dict[str, Floats]:
-        """All that it has, to go on from."""
+        """All arrays, for a checkpoint."""
         return self.all()
 
     def restore(self, arrays: dict[str, Floats]) -> None:
@@ -97,8 +97,8 @@ class States:
 
 
 def without_jumps(parameters: np.ndarray) -> np.ndarray:
-    """Euler parameters (t, bodies, 4), in place, with the signs that let them go on from one state to the
-    next; nan for all where some are not finite."""
+    """Euler parameters (t, bodies, 4), in place, with signs for which they are continuous from state to
+    state; nan for all where some are not finite."""
     if not np.isfinite(parameters).all():
         return np.full_like(parameters, np.nan)
     signs = np.sign(np.einsum("tbi,tbi->tb", parameters[1:], parameters[:-1]))

@@ -25,7 +25,7 @@ SPANS, ENDS = "spans", ("before_x", "before_e", "after_x", "after_e")
 
 @dataclass
 class _Rows:
-    """Of one sheet, or of all parts."""
+    """Stored values of one sheet, or of all parts."""
 
     columns: Ints
     first: int = 0
@@ -37,10 +37,10 @@ class _Rows:
 
 
 class StatesThere:
-    """As `states.States`, of a Model in which sheets come in or leave."""
+    """Like `states.States`, for a Model in which sheets come in or leave."""
 
     def __init__(self, model: Model, mirror: Any):
-        """`mirror` shows the bodies that are not solved for, None: there are none."""
+        """`mirror`: places the bodies that symmetry eliminates, None: none are."""
         self._model, self._mirror = model, mirror
         bodies = len(model.bodies.name)
         parts, self._blocks = np.ones(bodies, bool), []
@@ -52,7 +52,7 @@ class StatesThere:
         self.count = 0
 
     def add(self, motion: Motion, there: NDArray[np.bool_]) -> None:
-        """Stores a state, with which sheets are `there` (sheets,)."""
+        """Stores a state, in which the sheets `there` (sheets,) are in the machine."""
         state = motion
         if self._mirror is not None or len(self._model.meshes):
             bodies = len(self._model.bodies.name)
@@ -87,7 +87,7 @@ class StatesThere:
         return self.first(self.count)
 
     def first(self, times: int) -> dict[str, Any]:
-        """The first states, while the run may go on."""
+        """The first states; the run may continue meanwhile."""
         found: dict[str, Any] = {
             name: Stored(times, [self._block(name, b, times) for b in self._blocks]) for name in WIDTHS
         }
@@ -110,7 +110,7 @@ class StatesThere:
         return Block(own, rows.first if rows.times else times, states, before, after)
 
     def kept(self) -> dict[str, np.ndarray]:
-        """All that it has, to go on from."""
+        """All arrays, for a checkpoint."""
         flat = {
             name: np.concatenate([np.reshape(b.states[name], (-1, width)) for b in self._blocks])
             for name, width in WIDTHS.items()
@@ -119,7 +119,7 @@ class StatesThere:
         return {**flat, SPANS: spans, **self._ends}
 
     def restore(self, arrays: dict[str, np.ndarray]) -> None:
-        """Goes back to what `kept` gave."""
+        """Restores the state that `kept` returned."""
         at = 0
         for block, (first, times) in zip(self._blocks, arrays[SPANS].tolist(), strict=True):
             block.first, end = first, at + times * len(block.columns)

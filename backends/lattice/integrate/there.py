@@ -1,9 +1,9 @@
-"""The bodies that the steps of a pass have while sheets are not in the machine.
+"""Numbering of the present bodies, while some sheets are not in the machine.
 
-A step copies and clears the rows of all its bodies. So sheets that have not come yet, or have left, have no
-rows: bodies that are there are numbered among themselves, in the same order, and numbered again as a sheet
-comes in or leaves. Contacts keep their rows, sheets and parts their numbers. Sums have the same terms in the
-same order: a pass is bitwise identical to one with the rows of all bodies.
+A step copies and clears the rows of all its bodies. So sheets that have not entered yet, or have left, have
+no rows. The present bodies are renumbered, in the same order, each time a sheet comes in or leaves. Contacts
+keep their rows; sheets and parts keep their numbers. Sums have the same terms in the same order, so a pass is
+bitwise identical to one with the rows of all bodies.
 """
 
 from __future__ import annotations
@@ -21,15 +21,15 @@ from mdlgen.model.tables import Floats, Ints
 
 
 class There(NamedTuple):
-    """Which bodies there are, by their numbers in the whole System, rising, (n,), and the number that each of
-    the whole has among them, (bodies + 1,), -1: none, as the last one; None: all of both."""
+    """The present bodies of a System. Both fields are None if all bodies are present."""
 
-    bodies: Ints | None = None
+    bodies: Ints | None = None  # their numbers in the whole System, in ascending order, (n,).
+    # number of each body of the whole System among them, (bodies + 1,); -1: absent, and the last one, ground
     place: Ints | None = None
 
     @classmethod
     def of(cls, gone: NDArray[np.bool_]) -> There:
-        """Without the bodies that are `gone` (bodies,)."""
+        """All bodies except those that are `gone` (bodies,)."""
         if not gone.any():
             return cls()
         bodies = np.flatnonzero(~gone)
@@ -38,45 +38,45 @@ class There(NamedTuple):
         return cls(bodies, place)
 
     def whole(self, own: Ints) -> Ints:
-        """The numbers in the whole of bodies that are there."""
+        """Numbers in the whole System of present bodies."""
         return own if self.bodies is None else self.bodies[own]
 
     def own(self, whole: Ints) -> Ints:
-        """The numbers that bodies of the whole have here; -1: of the ground of a joint, or of one that is
-        not there."""
+        """Numbers of bodies of the whole System among the present ones; -1: absent, or the ground of a
+        joint."""
         return whole if self.place is None else self.place[whole]
 
     def body(self, own: int) -> int:
-        """The number in the whole of a body that is there."""
+        """Number in the whole System of a present body."""
         return own if self.bodies is None else int(self.bodies[own])
 
     def number(self, body: int) -> int:
-        """The number that a body of the whole has here, which is there."""
+        """Number of a body of the whole System, which must be present, among the present ones."""
         return body if self.place is None else int(self.place[body])
 
     def rows(self, array: np.ndarray) -> np.ndarray:
-        """Those of an array with a row for each body of the whole; with or without one for the ground."""
+        """Rows of present bodies, of an array for the whole System; it may have a last row for the ground."""
         if self.bodies is None:
             return array
         return array[self.bodies[self.bodies < len(array)]]
 
 
 class Whole:
-    """Where all bodies of a pass are."""
+    """Places of all bodies of a pass: the present ones from its state, the others as they were last."""
 
     def __init__(self, there: There, x: Floats, r: Floats):
-        """Which of them are there; where all are as the pass begins: x (bodies, 3) [mm], r (bodies, 9)."""
+        """`there`: the present bodies; x (bodies, 3) [mm], r (bodies, 9): all bodies as the pass begins."""
         self.there, self._x, self._r = there, x, r
 
     def places(self, state: State) -> tuple[Floats, Floats]:
-        """Of all bodies, x and r, with the state of those that are there; not to be written to."""
+        """x and r of all bodies, with the present ones from `state`; the caller must not change them."""
         if self.there.bodies is None:
             return state.x, state.r
         self._x[self.there.bodies], self._r[self.there.bodies] = state.x, state.r
         return self._x, self._r
 
     def motion(self, state: State, motion: Motion) -> Motion:
-        """Of all bodies, in the same way, with their velocities; those that are not there have none."""
+        """Motion of all bodies, with the present ones from `state`; the velocities of the others are 0."""
         x, r = self.places(state)
         if self.there.bodies is None:
             return Motion(x, r, motion.u, motion.w)
@@ -85,12 +85,12 @@ class Whole:
         return Motion(x, r, u, w)
 
     def carried(self, state: State) -> dict[str, np.ndarray]:
-        """Where all bodies are, by names; `restore` has them all."""
+        """x and r of all bodies for a checkpoint, by name."""
         self._x, self._r = self.places(state)
         return {"sleep.x": self._x, "sleep.r": self._r}
 
     def turn(self, there: There, state: State) -> tuple[Floats, Floats]:
-        """From now on these bodies are there; their x and r."""
+        """Changes the present bodies to these. Returns their x and r."""
         self._x, self._r = self.places(state)
         self.there = there
         return there.rows(self._x), there.rows(self._r)
@@ -99,26 +99,27 @@ class Whole:
 def parts_of(
     system: System, parts: Parts, asleep: NDArray[np.bool_], gone: NDArray[np.bool_]
 ) -> tuple[System, Ints, There]:
-    """The System with the sheets that are `asleep` (sheets,) as parts that do not move and without those that
-    are `gone` (sheets,), which of the pairs before those that are searched it has, and which bodies.
+    """Returns the System with the sheets `asleep` (sheets,) as fixed parts and without the sheets `gone`
+    (sheets,); the numbers of its pairs among those of the whole System, without searched ones; its bodies.
 
-    Films of air and bristles have numbers of bodies, and states that last: with them all bodies are there.
+    Films of air and bristles refer to bodies by number, and have states that last from step to step. So in
+    scenes with them all bodies count as present.
     """
     some, chosen = awake(system, parts, asleep, gone)
     if parts.air or len(system.bristles):
         return some, chosen, There()
-    there = There.of(np.append(gone, False)[parts.sheet_of])  # the last one is of what is no sheet
+    there = There.of(np.append(gone, False)[parts.sheet_of])  # the last entry is for bodies of no sheet, -1
     return _renumbered(some, there), chosen, there
 
 
 def _renumbered(system: System, there: There) -> System:
-    """A System with the bodies alone that are there, whose joints, pairs, loads and images are of these."""
+    """A System with only the present bodies; joints, pairs, loads and images refer to their new numbers."""
     if there.bodies is None:
         return system
     own, search = there.own, system.search
     joints, pairs, loads = system.joints.copy(), system.pairs, system.loads.copy()
     joints["a"], joints["b"] = own(joints["a"]), own(joints["b"])
-    first = pairs[: search.first]  # those behind are searched
+    first = pairs[: search.first]  # pairs after these are searched
     first["a"], first["b"] = own(first["a"]), own(first["b"])
     loads["body"] = own(loads["body"])
     images = system.images[own(system.images["body"]) >= 0]

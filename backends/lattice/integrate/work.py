@@ -36,12 +36,11 @@ from mdlgen.model.tables import Floats, Ints, Model
 
 
 class Begun(NamedTuple):
-    """The part of a System that is there as a run begins, which of its pairs before those that are searched
-    that has, and which bodies."""
+    """The part of a System that is in the machine as a run begins."""
 
     system: System
-    chosen: Ints
-    there: There
+    chosen: Ints  # numbers of its pairs among those of the whole System, without searched pairs.
+    there: There  # its bodies.
 
 
 def start(model: Model, begun: Begun) -> tuple[State, Midpoint, Matrix]:
@@ -59,21 +58,21 @@ def start(model: Model, begun: Begun) -> tuple[State, Midpoint, Matrix]:
         if roller.begins_turning:  # with its shaft
             at = system.bodies["spin"][there.number(roller.body)]
             if at < 0:
-                continue  # left out, see mirror
+                continue  # eliminated by symmetry, see symmetry.mirror
             state.vb[at] = state.ub[at] = roller.prescribed(0.0)
         if roller.motor and roller.axle is not None:
             at = system.bodies["spin"][there.number(roller.body)]
             state.s[at] = roller.axle.begins_behind(float(roller.prescribed(0.0)))
     for rate in begun_rates(model):
         at = system.bodies[rate.of][there.number(rate.body)]
-        if at >= 0:  # else it is left out
+        if at >= 0:  # else eliminated by symmetry
             state.vb[at] = state.ub[at] = rate.rate
     return state, mid, matrix
 
 
 def begun_places(model: Model) -> tuple[Floats, Floats]:
-    """Where bodies are as a run begins, the ground being the last one: x (bodies + 1, 3) [mm] and r
-    (bodies + 1, 9)."""
+    """Places x (bodies + 1, 3) [mm] and rotations r (bodies + 1, 9) of bodies as a run begins; the last row
+    is the ground."""
     bodies = model.bodies
     return (
         np.append(bodies.position, np.zeros((1, 3)), axis=0),
@@ -82,8 +81,8 @@ def begun_places(model: Model) -> tuple[Floats, Floats]:
 
 
 def starts(model: Model, nodes: Ints) -> tuple[Floats, ...]:
-    """Initial values of boxes, the bodies `nodes` (n,): velocities [mm/ms], angular momenta [N mm ms], (n, 3)
-    each; and velocities with angular velocities [rad/ms], (n, 6), for the two steps before."""
+    """Initial values of the boxes `nodes` (n,): velocities [mm/ms] and angular momenta [N mm ms], (n, 3)
+    each; velocities with angular velocities [rad/ms], (n, 6), once for each of the last three steps."""
     bodies = model.bodies
     turn, spin, v = bodies.rotation[nodes], bodies.spin[nodes], bodies.velocity[nodes]
     own = np.einsum("nji,nj->ni", turn, spin)
@@ -138,8 +137,8 @@ def workspace(
     islands: Islands,
     asleep: Asleep,
 ) -> Workspace:
-    """Workspace of a run from a state, for which the pairs of boxes of two sheets are searched. `parts`: the
-    part of a System that steps have, and the bodies of that part."""
+    """Workspace of a run that begins from a state. Searches the pairs of boxes of two sheets in that state.
+    `parts`: the part of a System that is solved, and its bodies."""
     from mdlgen.backends.lattice.kernels import entries, forces
     from mdlgen.backends.lattice.kernels.contact import condensed
     from mdlgen.backends.lattice.kernels.integrate import damped, momentum, room

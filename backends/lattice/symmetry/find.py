@@ -18,26 +18,27 @@ from mdlgen.model.tables import BOX_BOX, Floats, Ints, Model, SheetPart
 
 
 def find(model: Model, system: System) -> Mirror | None:
-    """The plane, or None: there is none, or nothing touches. Without contacts a whole scene conserves its
-    momentum to round-off, which one side alone would not. These scenes are not halved, either: with air
-    between sheets, measured friction, motors, limiters or shafts; with a sheet that sticks on a roller which
-    the plane cuts; with Poisson's effect, which couples boxes on both sides of the plane; with parts that
-    turn about a pivot or slide, or with stops.
+    """Returns the plane, or None if the scene has none or must not be halved.
 
-    The plane goes through the middle of the sheets, between boxes, along one of their edges. Everything is
-    compared: bodies, their supports and drives, contacts, loads, and the forces of the joints of a random
-    state.
+    A scene without contacts is not halved: solved as a whole it conserves its momentum to round-off, but one
+    half alone would not. Nor are scenes with air between sheets, measured friction, motors, limiters or
+    shafts; with friction that sticks between a sheet and a roller that the plane cuts; with Poisson's effect,
+    which couples boxes on both sides of the plane; with parts that turn about a pivot or slide; with stops;
+    with loads or gravity that change over time.
+
+    The plane passes through the middle of the sheets, between boxes and parallel to an edge. The check
+    compares bodies, their supports and drives, contacts, loads, and the forces of joints in a random state.
     """
     if not len(model.pairs) or not model.run.symmetry or len(model.corners) or model.gates or model.stopped:
         return None
     if (model.contacts.air_viscosity > 0.0).any():
         return None  # air presses across the plane
     if model.contacts.frictions is not None:
-        return None  # a field that scatters has no image
+        return None  # measured friction may vary over a sheet, without symmetry
     if any(roller.axle is not None or roller.leader >= 0 for roller in model.rollers):
-        return None  # a motor, a limiter or a shaft may have parts on both sides
+        return None  # a motor, a limiter or a shaft may act on both sides
     if model.changes:
-        return None  # loads on both sides may change by unlike factors
+        return None  # loads on the two sides may have different factors over time
     for axis in (1, 0):
         normal = model.sheets[0].rotation[:, axis]
         mirror = _plane(model, normal, float(normal @ model.sheets[0].center))
@@ -64,7 +65,7 @@ def _plane(model: Model, normal: Floats, at: float) -> Mirror | None:
         image[part.body] = next((o.body for o in machine if seen_as(blank, model, part, o)), -1)
     if (image < 0).any() or (image[image] != itself).any():
         return None
-    # the size of the scene is what places are compared by
+    # errors of places are relative to the size of the scene
     size = max(1.0, float(np.abs(table.position - table.position[0]).max(initial=0.0)))
     if np.abs(blank.places(table.position) - table.position[image]).max() > SAME * size:
         return None
@@ -87,7 +88,7 @@ def _plane(model: Model, normal: Floats, at: float) -> Mirror | None:
 
 
 def _grid(mirror: Mirror, sheet: SheetPart) -> Ints:
-    """Images of the boxes of a sheet; -1 where it is not cut between boxes."""
+    """Mirror images of the boxes of a sheet; -1 for all if the plane does not pass between boxes."""
     grid = sheet.first + np.arange(sheet.count).reshape(sheet.n_y, sheet.n_x)
     along = np.abs(sheet.rotation.T @ mirror.normal)
     if along[1] > 1.0 - SAME and sheet.n_y % 2 == 0:
@@ -98,8 +99,9 @@ def _grid(mirror: Mirror, sheet: SheetPart) -> Ints:
 
 
 def _sides(mirror: Mirror, model: Model) -> bool:
-    """True if the free sides of boxes are those of their images. The mirror exchanges both ends of an axis
-    along the normal; box axes are right-handed, so that exchange is part of their numbering of sides."""
+    """True if the free sides of each box are the mirror images of those of its image. The axes of all boxes
+    are right-handed, while a reflection makes axes left-handed. So the two sides of an image along the normal
+    are numbered in exchanged order."""
     exposed = model.bodies.exposed
     for sheet in model.sheets:
         own = slice(sheet.first, sheet.first + sheet.count)
@@ -114,9 +116,9 @@ _NO_LAW = ("entry", "part_a", "part_b", "name", "frictions")
 
 
 def _contacts(model: Model, mirror: Mirror) -> Mirror | None:
-    """The Mirror with the rows of contacts, where each row has an image with the same law, and no box reaches
-    a part on the other side. Boxes of two sheets meet on one side or on the other, as both are cut between
-    boxes."""
+    """Returns the Mirror with the rows of contacts. None if a row has no image with the same law, or if a box
+    can reach a part on the other side. The plane passes between boxes in each sheet. So boxes of two sheets
+    that touch are on the same side."""
     table, image = model.contacts, mirror.image
     place = {part.name: part.body for part in model.machine}
     names = {part.body: part.name for part in model.machine}
@@ -135,7 +137,7 @@ def _contacts(model: Model, mirror: Mirror) -> Mirror | None:
     listed = table.kind[model.pairs.contact] != BOX_BOX
     a, b = model.pairs.a[listed], model.pairs.b[listed]
     across = (mirror.gone[a] != mirror.gone[b]) & ~own[a] & ~own[b]
-    # a part away from the plane is out of reach of the boxes on the other side, which a run checks
+    # boxes on the other side do not reach a part that is away from the plane; a run checks this
     clear = max(sheet.thickness for sheet in model.sheets)
     reached = {part.body for part in model.machine if not off(mirror, part) > clear}
     if not reached.isdisjoint([*a[across].tolist(), *b[across].tolist()]):
