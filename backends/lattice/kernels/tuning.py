@@ -31,8 +31,8 @@ TAKEN_AGAIN = 4.0
 # speed at a tolerance of 1e-3; else the step is halved. Sheets flutter, and always differ by more.
 MAY_MISS = 1e-3
 
-# Convention: energy error of contacts in one step, relative to the energy that passes through the run, at a
-# tolerance of 1e-3. Above it the step is halved. 400 such steps add up to the limit of the energy audit.
+# Convention: energy error of contacts in one step, relative to the energy of their island, at a tolerance of
+# 1e-3. Above it the step is halved. 400 such steps add up to the limit of the energy audit.
 MAY_MAKE = 5e-5
 
 # Convention: the step is halved where it took more iterations than HARD, and doubled again where it took

@@ -1,1 +1,1 @@
-"""Steps in time: the equations of one and their tangent, the iterations that solve them, and many steps."""
+"""Integration over time: the equations of a step, their tangent, their solution, and runs of many steps."""

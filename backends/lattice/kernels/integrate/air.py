@@ -1,9 +1,10 @@
 """Air between sheets in a step: its pressures, their forces on bodies, and its part of an iteration.
 
 The gaps are frozen in a step (see mechanics.film). They are those of its middle at the guessed velocities,
-but at least half of those at its beginning. So pressures are linear in the velocities, and their forces are
-the slope of a convex function of them. Cells of air are points of an iteration with frozen contacts
-(integrate.points), whose forces change together. The factored matrix contains each cell alone.
+but at least half of those at its beginning. So pressures are linear in the velocities, and the forces are the
+gradient of a convex function of the velocities. An iteration with frozen contacts treats each cell of air as
+a point (integrate.points); the force of such a point depends on the rates of all cells. The factored matrix
+contains each cell without its coupling to the others.
 
 At the end of a step velocities are carried to 2 u - v0. A motion that a film stops within a part of a step
 would oscillate, as with joints that have a damping time (integrate.damped). So the same correction is
@@ -29,8 +30,8 @@ from mdlgen.program.kernel import BORROWS, njit
 
 @njit(cache=True, error_model="numpy", **BORROWS)
 def lay(work, h):
-    """Sets up the air of a step: gaps, areas and matrices at the midpoint, which is h after its beginning.
-    Returns True if any acts."""
+    """Sets up the air of a step: gaps, areas and matrices in the middle of the step, h [ms] after its
+    beginning. Returns True if any film acts."""
     tables, film, motion = work.tables, work.film, work.mid.motion
     clear_films(film)
     for p in range(tables.pairs.size):
@@ -155,7 +156,7 @@ def _moved(work, push):
 
 @njit(cache=True, error_model="numpy", **BORROWS)
 def _closes(work, end, w, y, times_h):
-    """Adds to y the volumes that velocities w (nodes, 6) close of all cells in the time times_h."""
+    """Adds to y, for each cell, times_h times the rate at which velocities w (nodes, 6) reduce its volume."""
     tables, film = work.tables, work.film
     for k in range(film.many[0]):
         pair, i = tables.pairs[film.listed[k]], film.head[film.listed[k]]
@@ -174,7 +175,7 @@ def _closes(work, end, w, y, times_h):
 
 @njit(cache=True, error_model="numpy", **BORROWS)
 def _precondition(work, end, h):
-    """Factors A + h C M^-1 C^T, of the latter only the diagonal, cell by cell."""
+    """Factors A plus the diagonal of h C M^-1 C^T."""
     tables, film, r = work.tables, work.film, work.mid.motion.r
     for i in range(film.ends.shape[0]):
         for j in range(film.ends.shape[1]):
@@ -226,8 +227,8 @@ def _lacks(work, before, ahead, w):
 
 @njit(cache=True, error_model="numpy", **BORROWS)
 def air_overshoot(work, before, ahead, dt):
-    """Sets the velocities to subtract, Film.off, as damped.overshoot does those of joints. The latter are
-    already excluded here."""
+    """Sets Film.off, the velocities to subtract because of air. damped.overshoot does the same for joints,
+    and is called first: the deviation here is what remains after its correction."""
     film, tables, h = work.film, work.tables, 0.5 * dt
     off, push, end = film.off, film.push, film.place
     s, r, p, q = film.vectors
@@ -235,7 +236,7 @@ def air_overshoot(work, before, ahead, dt):
     if film.many[0] == 0:
         return
     _lacks(work, before, ahead, push)
-    for b in range(tables.bodies.size):  # places at which they are subtracted
+    for b in range(tables.bodies.size):  # places at the end of the step, where `off` is subtracted
         n = tables.bodies[b].node
         for i in range(3):
             end[b, i] = work.state.x[b, i] + (dt * work.state.u[n, i] if n >= 0 else 0.0)

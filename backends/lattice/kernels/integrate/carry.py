@@ -16,11 +16,11 @@ from mdlgen.program.kernel import BORROWS, njit
 
 @njit(cache=True, error_model="numpy", **BORROWS)
 def spun(axles, body, s, u, v, t, dt):
-    """Spin of a roller at the end of a step from t, from those at its middle and its beginning: 2 u - v,
-    except with a clutch, a motor or a bearing that is stiff for the step. s: as of `acting`.
+    """Spin of a roller at the end of a step from t: 2 u - v, from the spins u in its middle and v at its
+    beginning. It is corrected for a clutch, a motor or a bearing that is stiff for the step. s: see `acting`.
 
-    The midpoint rule would let the spin oscillate about that of the shaft. So the change against the shaft is
-    reduced, the more the stiffer the clutch is compared with the roller's inertia.
+    By the midpoint rule alone the spin would oscillate about that of the shaft. So the change of the spin
+    relative to the shaft is reduced. The stiffer the clutch is relative to the roller's inertia, the more.
     """
     h = 0.5 * dt
     does = acting(axles, body, s, u, t + h, h)

@@ -110,8 +110,8 @@ def _make_matrix(work, h, lag, renew):
 
 @njit(cache=True, error_model="numpy", **BORROWS)
 def _how_far(work, h, falls, linear, square, level):
-    """Part of a direction that the line search takes. falls: slope at its beginning; linear + part square:
-    slope of the masses and bushings at `part` of it; level: see SLOPE_WHOLE."""
+    """Line search: returns the factor on the direction. `falls`: slope of the function at factor 0; linear +
+    s square: slope of its masses and bushings at the factor s; `level`: see SLOPE_WHOLE."""
     low, high, at_low = 0.0, 1.0, falls
     at_high = linear + square + slope(work, h, 1.0, True)
     if abs(at_high) <= level * abs(falls):
@@ -148,8 +148,8 @@ def _dot(a, b):
 
 @njit(cache=True, error_model="numpy", **BORROWS)
 def _gradient(work, h, axes, part):
-    """Takes that part of the direction, and evaluates the gradient of the function there: the vectors'
-    GRADIENT."""
+    """Moves the points by `part` times the direction, and writes the gradient of the function there into row
+    GRADIENT of the vectors."""
     frozen, matrix, nodes = work.frozen, work.matrix, work.tables.nodes
     res, resb, own = frozen.vectors[RESIDUAL], frozen.border[RESIDUAL], matrix.own
     g, gb = frozen.vectors[GRADIENT], frozen.border[GRADIENT]
@@ -193,8 +193,8 @@ def _direction(work, axes, h):
 
 @njit(cache=True, error_model="numpy", **BORROWS)
 def _cured(work, h, axes, part, least):
-    """True if a change that ends at that part of the direction removes enough residual momentum. Checks each
-    sheet and roller that would move by more than `least` if it were free (see momentum.let_go)."""
+    """True if the change, with `part` times the last direction, removes enough residual momentum. Checks each
+    sheet and roller that the residual would give a speed above `least` if it were free (momentum.let_go)."""
     g, lets = work.frozen.vectors[GRADIENT], work.free.lets
     _gradient(work, h, axes, part)
     turn_nodes(work.tables.nodes, axes, g, False)
@@ -220,10 +220,10 @@ def _say_enough(work, limit):
 
 @njit(cache=True, error_model="numpy")
 def solve_convex(work, t, h, lag, counts, limit, control, renew, whole):
-    """Replaces the residual, in box axes, by the change of velocities that is to be subtracted. Returns the
-    number of iterations; 0: it failed, -1: it did not converge. counts: how many pairs touch, how many are
-    near; `renew`: a new factor recomputes masses and bushings; `whole`: the problem is solved to its end,
-    even where the first direction is taken wholly."""
+    """Replaces the residual, in box axes, by the change of velocities to subtract. Returns the number of
+    iterations; 0: singular or not descending, -1: not converged. `counts`: numbers of pairs that touch and
+    that are near; `renew`: a new factor recomputes masses and bushings; `whole`: do not stop after the first
+    direction, see FIRST_DIRECTION."""
     tables, matrix, frozen = work.tables, work.matrix, work.frozen
     factored, counters = control.factored, control.counters
     z, zb, axes = matrix.res, matrix.resb, work.condensed.axes
@@ -307,7 +307,7 @@ def solve_convex(work, t, h, lag, counts, limit, control, renew, whole):
             change[i] += part * p[i]
         for i in range(pb.size):
             changeb[i] += part * pb[i]
-        # a small part of a direction does not mean a small residual: the whole direction is measured
+        # `moved` is the change of the whole direction: a small `part` of it does not mean a small residual
         rate = moved / before
         first = not whole and iteration == 0 and part == 1.0 and moved <= FIRST_DIRECTION * limit
         converged = first or moved <= CONVEX_ROUGH * limit

@@ -10,15 +10,15 @@ from mdlgen.program.kernel import njit
 
 @njit(cache=True, error_model="numpy")
 def _outer(times, a, b):
-    """times a b^T, row by row."""
+    """Matrix `times` a b^T (9), row by row."""
     x, y, z = scale(times, a)
     return (x * b[0], x * b[1], x * b[2], y * b[0], y * b[1], y * b[2], z * b[0], z * b[1], z * b[2])
 
 
 @njit(cache=True, error_model="numpy")
 def _couple(a, slots, one, two, stretch, bend):
-    """Adds the coupling between the ends of two joints, in both directions. Each end is (node, arm, sign,
-    axis about which the joint bends, axis along which it stretches)."""
+    """Adds the coupling block of an end of one joint and an end of another one; where both are the same node,
+    its transpose, too. Each end is (node, arm, sign, bending axis, stretching axis)."""
     n, p, s, m, e = one
     k, q, t, o, d = two
     if n < 0 or k < 0:

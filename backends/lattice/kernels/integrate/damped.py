@@ -1,16 +1,16 @@
 """Velocities at the end of a step where joints have a damping time of their own.
 
-The midpoint rule carries the velocity v0 to 2 u - v0. Where damping stops a motion within a part of a step, u
-is nearly its final value, and v alternates about it from step to step and hardly decays. Positions and
-contacts depend on u alone and are right; the velocities at the end of the step, which are reported, would not
-be.
+The midpoint rule carries the velocity v0 to 2 u - v0. If damping stops a motion in a fraction of a step, u is
+nearly the final velocity. But v alternates about u from step to step, and hardly decays. Positions and
+contacts depend on u alone and are right. The reported velocities, at the end of the step, would be wrong.
 
 The deviation of v0 from a straight course is w = u - v0 - (u - u') dt/(dt + dt'), with u' and dt' of the step
-before. The part Y w of it is subtracted, with Y = X/(1 + X) and X = h M^-1 C of these joints. For a resolved
-motion w is of second order in the step and Y of first, so the rule stays of second order; otherwise v
-approaches the straight course. That is stable at any step: oscillators of any frequency and damping time have
-a spectral radius below 1. The energy that is removed is one that the same joints would dissipate within the
-step. Rigid motion has no part in C, so linear and angular momentum of a sheet are conserved.
+before. Y w is subtracted from v, where Y = X/(1 + X), X = h M^-1 C, and C is the damping of these joints. For
+a motion that the step resolves, w is of second order in the step and Y of first, so the rule stays of second
+order. For other motions v approaches the straight course. The correction is stable at any step: for
+oscillators of any frequency and damping time the spectral radius is below 1. The same joints would dissipate
+the removed energy within the step. C does not act on rigid motions, so linear and angular momentum of a sheet
+are conserved.
 """
 
 from __future__ import annotations
@@ -34,7 +34,7 @@ PUSH, LEFT = 0, 1
 
 
 def empty(system) -> Damped:
-    """Joints with a damping time, their dampers alone."""
+    """The Damped of a System: its joints with a damping time, without their springs, and scratch arrays."""
     joints = system.joints[system.joints["time"] > 0.0].copy()
     joints["k"] = 0.0
     joints["first"] = -1
@@ -72,7 +72,7 @@ def _turned(nodes, r, x, inward):
 
 @njit(cache=True, error_model="numpy", **BORROWS)
 def _leave(work):
-    """Computes the momentum of all sheets that remains after the dampers, LEFT, from PUSH."""
+    """Solves for the momentum of all sheets that the dampers leave: row LEFT of vectors, from row PUSH."""
     spans, damped = work.matrix.couplings.colouring.spans, work.damped
     copy(damped.vectors[LEFT], damped.vectors[PUSH])
     for sheet in range(spans.shape[0]):
@@ -83,8 +83,9 @@ def _leave(work):
 
 @njit(cache=True, error_model="numpy")
 def overshoot(work, before, ahead, dt):
-    """Sets the velocities to subtract, Damped.off, of a step that is solved but not yet carried on. `before`
-    (nodes, 6) are the velocities in the middle of the step before, `ahead` is dt/(dt + dt')."""
+    """Sets Damped.off, the velocities to subtract at the end of a step. The step is solved, but its state is
+    still that at its beginning. `before` (nodes, 6): velocities in the middle of the step before; `ahead`:
+    dt/(dt + dt')."""
     bodies, nodes = work.tables.bodies, work.tables.nodes
     joints, band, made, off = work.damped.joints, work.damped.band, work.damped.made, work.damped.off
     push, left, end = work.damped.vectors[PUSH], work.damped.vectors[LEFT], work.damped.place
@@ -118,8 +119,8 @@ def overshoot(work, before, ahead, dt):
             push[6 * n + i] = push[6 * n + i] / mass - left[6 * n + i]
             push[6 * n + 3 + i] = push[6 * n + 3 + i] / j[i] - left[6 * n + 3 + i]
     _turned(nodes, rm, push, False)
-    # the factor is of an earlier shape, which has other rigid motions; and these velocities are subtracted at
-    # the end of the step
+    # remove rigid motions, as `push` must not change momenta. It may contain some: the factor is that of an
+    # earlier shape of the sheet, and places at the end of the step differ from those in its middle
     work.free.residual[:] = 0.0
     copy(end, xm)
     for n in range(nodes.size):
