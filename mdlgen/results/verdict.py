@@ -262,11 +262,14 @@ def _in_each(record: Mapping[str, Any], head: str) -> None:
 def _at_sensor(record: Mapping[str, Any], wanted: Requirement, sensor: str) -> Outcome:
     """Outcome for sheets that passed a sensor; if none did, or no two, nothing is known."""
     name = MEASURES[wanted.measure or ""]
+    if wanted.measure == "gap" and same(wanted.dimension, parse_unit("ms").dimension):
+        name = "gap_ms"  # a gap is a length or a time, as its limit is
     unit = next(unit for end, unit in UNITS.items() if name.endswith(end))
     own = parse_unit(unit)
     if not same(own.dimension, wanted.dimension):
         raise ValueError(
-            f"{wanted.measure} at {sensor} is in {unit}, the limit {wanted.unit or 'has no unit'}"
+            f"{wanted.measure} at {sensor} is in {unit}, the limit {wanted.unit or 'has no unit'}; "
+            f"give the limit in {unit}{', or in ms' if wanted.measure == 'gap' else ''}"
         )
     passed = [row for row in record["sensors"][sensor]["passed"] if row[name] is not None]
     value, margin = _worst(np.array([own.factor * row[name] for row in passed]), wanted)
