@@ -42,7 +42,7 @@ SCENE = {
     ),
     "W108": (
         "A drive of speed 0 holds its roller still; it does not let it turn freely. Leave `drive` out for "
-        "an idler."
+        "an idler. Where a rule orders another speed the drive waits for it, and there is no lint."
     ),
     "W109": (
         "A sheet that has no contact flies through the machine. Contacts are named one by one, or by a "
@@ -199,8 +199,9 @@ SCENE = {
         "load is not known before the run; the line has the way for half. It comes where the drive stands "
         "for more than a tenth of the run, by its speed or its profile, a sheet may come to the part, and "
         "that way is more than run.tolerance times the way of the fastest driven surface that the sheet has "
-        "a contact with, or times a tenth of the sheet's length where that is more. After the run an event "
-        "`creep` says what was held, and how far it crept. friction.sticking holds it."
+        "a contact with, or times a tenth of the sheet's length where that is more. Where a rule moves the "
+        "drive the time is that without the rule. After the run an event `creep` says what was held, and how "
+        "far it crept. friction.sticking holds it."
     ),
     "W140": (
         "Friction that scatters has a correlation length, over which it changes. A box has the mean over its "

@@ -71,6 +71,8 @@ def deep_stack(model: Model) -> Iterator[Lint]:
         for row in np.flatnonzero(np.isin(table.kind, (BOX_BOX, BOX_PLANE))).tolist():
             one, name = sheets[table.part_a[row]], table.part_b[row]
             below = sheets.get(name)
+            if any(sheet.enters != 0.0 for sheet in (one, below, touched) if sheet is not None):
+                continue  # they come in one after another, at their place
             on_plane = name in planes and roller.name not in nipped and _faces(planes[name], spring.direction)
             if one.name not in groups[touched.name] or not (below or on_plane):
                 continue

@@ -63,12 +63,15 @@ def on_slope(model: Model) -> Iterator[Lint]:
 def stopped(model: Model) -> Iterator[Lint]:
     """Driven parts that stand still for a part of the run where a sheet may be in contact with them."""
     table = model.contacts
+    by_rules = model.reactions.ordered("speed")
     for same, held in _by_entry(model, _stops(model)):
+        ruled = any(_carrier(model, table.part_b[row]) in by_rules for row in same)
+        unless = " unless a rule moves it" if ruled else ""
         yield Lint(
             "W139",
             f"contacts.{table.called(held.row)}.friction",
-            f"{_names(table.part_b[row] for row in same)}: the drive stands still for {held.still:.4g} ms, "
-            f"and what friction holds there at half of its limit creeps by {held.far:.2g} mm: "
+            f"{_names(table.part_b[row] for row in same)}: the drive stands still for {held.still:.4g} ms"
+            f"{unless}, and what friction holds there at half of its limit creeps by {held.far:.2g} mm: "
             f"{_names(table.part_a[row] for row in same)} ({_over(model, held.row)})",
             _remedy(model, held.row),
         )
@@ -111,6 +114,12 @@ def _stops(model: Model) -> Iterator[_Held]:
         allowed = model.run.tolerance * judged_by(max(sheet.size), travels[sheet.name])
         if still > STANDS * duration and far > allowed:
             yield _Held(row, far, HALF, still)
+
+
+def _carrier(model: Model, name: str) -> str:
+    """Name of the roller that carries a mesh; else the name itself."""
+    on = {mesh.name: mesh.on for mesh in model.meshes if mesh.on >= 0}
+    return model.rollers[on[name]].name if name in on else name
 
 
 def _by_entry(model: Model, found: Iterable[_Held]) -> Iterator[tuple[list[int], _Held]]:

@@ -36,9 +36,11 @@ def idle_roller(model: Model) -> Iterator[Lint]:
 
 
 def idle_drive(model: Model) -> Iterator[Lint]:
+    by_rules = model.reactions.ordered("speed")
     for roller in model.rollers:
+        ordered = by_rules.get(roller.name, [])
         where = f"rollers.{roller.name}.drive"
-        if roller.speed == 0.0:
+        if roller.speed == 0.0 and not any(ordered):
             yield Lint(
                 "W108",
                 f"{where}.{'speed' if roller.profile is None else 'profile'}",
@@ -53,7 +55,7 @@ def idle_drive(model: Model) -> Iterator[Lint]:
                 "run longer, or ramp faster",
             )
         way = roller.one_way
-        senses = np.sign(roller.corners[:, 1])
+        senses = np.sign([*roller.corners[:, 1], *ordered])
         if way is not None and roller.speed is not None and np.any(senses == -way.direction):
             yield Lint(
                 "W117",

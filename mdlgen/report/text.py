@@ -10,8 +10,9 @@ from mdlgen.lints.cost import Cost
 from mdlgen.lints.smoothing import lines as smoothing_lines
 from mdlgen.model.parts.kinds import KINDS
 from mdlgen.report.overview import UNITS
+from mdlgen.results.notable import foremost, notable
 from mdlgen.results.result import INACCURATE, OK
-from mdlgen.results.verdict import outcomes_of
+from mdlgen.results.verdict import in_words, outcomes_of
 from mdlgen.results.wording import number, numbers, percent
 
 FIGURES = 4
@@ -244,10 +245,11 @@ def summary_text(record: dict[str, Any]) -> str:
         for k, rule in enumerate(record.get("rules", ()))
         if not rule["acted"]
     ]
-    happened = record.get("verdict", {}).get("events", [])
-    lines += happened[:MOST_EVENTS]
-    if len(happened) > MOST_EVENTS:
-        lines.append(f"and {len(happened) - MOST_EVENTS} more events (summary.json: verdict.events)")
+    happened = notable(record["events"]) if "verdict" in record else []
+    shown, more = foremost(happened, MOST_EVENTS)
+    lines += [in_words(event) for event in shown]
+    if more:
+        lines.append(f"and {len(happened) - len(shown)} more events: {more} (summary.json: verdict.events)")
     if record["halved"]:
         lines.append("one side was solved, the other is its mirror image (run.symmetry: false solves both)")
     for name, sheet in record["sheets"].items():

@@ -12,6 +12,7 @@ import numpy as np
 from mdlgen.errors import SpecError, did_you_mean
 from mdlgen.model.tables import Floats
 from mdlgen.results.estimates import SAFETY_REST
+from mdlgen.results.notable import notable
 from mdlgen.results.over_time import series
 from mdlgen.results.passing import came, there
 from mdlgen.results.result import OK
@@ -34,11 +35,6 @@ UNITS = {
     "_n": "N",
     "_w": "W",
 }
-# Events that a reader sees whether or not they are required away.
-NOTABLE = ("jam", "double_feed", "stub", "creep", "stall", "lost_steps")
-# A slip of more than this part of the surface's speed, over a whole stay, is named, too; one of more than all
-# of it is that of a roller which holds back.
-LARGE_SLIP = 0.2
 ROUND_OFF = 1e-9
 
 
@@ -96,35 +92,13 @@ def verdict(result: Result, record: Mapping[str, Any]) -> dict[str, Any]:
             }
             for o in outcomes
         ],
-        "events": [in_words(event) for event in _notable(record.get("events", ()))],
+        "events": [in_words(event) for event in notable(record.get("events", ()))],
     }
 
 
 def outcomes_of(record: Mapping[str, Any]) -> list[Outcome]:
     """The outcomes that a summary holds."""
     return [Outcome(**row) for row in record.get("verdict", {}).get("requirements", ())]
-
-
-def _notable(events: Sequence[Mapping[str, Any]]) -> list[Mapping[str, Any]]:
-    """Those that a reader sees in any case, creep last: jams are worth more of the few lines that a terminal
-    has. A jam or a wait at a roller says why a sheet slips there."""
-    held = [event for event in events if event["kind"] in ("jam", "wait")]
-
-    def explained(slip: Mapping[str, Any]) -> bool:
-        at = slip["time_ms"]
-        return any(
-            (event["sheet"], event["roller"]) == (slip["sheet"], slip["roller"])
-            and event["time_ms"] <= at <= event["time_ms"] + event["duration_ms"]
-            for event in held
-        )
-
-    def listed(event: Mapping[str, Any]) -> bool:
-        if event["kind"] != "slip":
-            return event["kind"] in NOTABLE
-        large = LARGE_SLIP < abs(event.get("part_of_surface_speed") or 0.0) <= 1.0
-        return large and not explained(event)
-
-    return sorted(filter(listed, events), key=lambda event: event["kind"] == "creep")
 
 
 def in_words(event: Mapping[str, Any]) -> str:
@@ -288,11 +262,14 @@ def _in_each(record: Mapping[str, Any], head: str) -> None:
 def _at_sensor(record: Mapping[str, Any], wanted: Requirement, sensor: str) -> Outcome:
     """Outcome for sheets that passed a sensor; if none did, or no two, nothing is known."""
     name = MEASURES[wanted.measure or ""]
+    if wanted.measure == "gap" and same(wanted.dimension, parse_unit("ms").dimension):
+        name = "gap_ms"  # a gap is a length or a time, as its limit is
     unit = next(unit for end, unit in UNITS.items() if name.endswith(end))
     own = parse_unit(unit)
     if not same(own.dimension, wanted.dimension):
         raise ValueError(
-            f"{wanted.measure} at {sensor} is in {unit}, the limit {wanted.unit or 'has no unit'}"
+            f"{wanted.measure} at {sensor} is in {unit}, the limit {wanted.unit or 'has no unit'}; "
+            f"give the limit in {unit}{', or in ms' if wanted.measure == 'gap' else ''}"
         )
     passed = [row for row in record["sensors"][sensor]["passed"] if row[name] is not None]
     value, margin = _worst(np.array([own.factor * row[name] for row in passed]), wanted)

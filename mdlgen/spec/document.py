@@ -140,8 +140,12 @@ class _Open:
         if not isinstance(event, ScalarEvent):
             raise SpecError("a key must be a plain name", self.path, place)
         if event.value in self.value:
+            first = keys[(*self.path, event.value)].line
             raise SpecError(
-                f"the key {event.value[:80]!r} stands twice", (*self.path, event.value[:80]), place
+                f"the key {event.value[:80]!r} stands twice, first in line {first}; write one key with "
+                "all of it, or rename one",
+                (*self.path, event.value[:80]),
+                place,
             )
         self.key = event.value
         keys[(*self.path, event.value)] = place

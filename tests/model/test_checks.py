@@ -208,3 +208,9 @@ def test_a_stack_that_a_roller_presses_together_too_deep(each: int, deep: bool, 
         assert "224 N/mm^1.5 or more" in hits[0].remedy
         assert "is more than three quarters of its thickness into box low" in result.status
         assert result.status.endswith("a stiffer contact would hold it, a smaller run.step would not")
+
+
+@pytest.mark.parametrize("late", ["top", "low"])
+def test_a_roller_does_not_press_on_a_sheet_that_comes_in_later(late: str) -> None:
+    scene = loads(STACK.format(each=35), overrides=[f"sheets.{late}.enters=1 ms"])
+    assert "contacts.each.stiffness" not in {x.where for x in lints(lower(scene)) if x.code == "W122"}

@@ -28,7 +28,7 @@ def refused(text: str, *overrides: str) -> SpecError:
     [
         ("a: &x 1\nb: *x\n", 1, "anchors"),
         ("a: 1\nb: !!python/object:os.system x\n", 2, "tags"),
-        ("a: 1\nb: 2\na: 3\n", 3, "stands twice"),
+        ("a: 1\nb: 2\na: 3\n", 3, "'a' stands twice, first in line 1; write one key with all of it"),
         ("a: 1\n---\nb: 1\n", 2, "second document"),
         ("a: [1, 2\nb: }\n", 2, "not YAML"),
         ("? [1, 2]\n: 3\n", 1, "plain name"),

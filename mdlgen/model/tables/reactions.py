@@ -56,6 +56,13 @@ class Reactions(Frozen):
     def __bool__(self) -> bool:
         return bool(self.sensors or self.rules)
 
+    def ordered(self, kind: str) -> dict[str, list[float]]:
+        """Values that rules order, by the name of what they order them of, in the units of `Order.value`."""
+        found: dict[str, list[float]] = {}
+        for order in (order for rule in self.rules for order in rule.orders if order.kind == kind):
+            found.setdefault(order.name, []).append(order.value)
+        return found
+
 
 def no_reactions() -> Reactions:
     """The table of a machine without sensors and rules."""
