@@ -10,9 +10,6 @@ from gate_scenes import FLOOR, GUIDE, HEAD, SOLVERS, G, angle, model
 from ran import solved
 from scipy.integrate import solve_ivp
 
-from mdlgen.errors import RefusedError
-from mdlgen.registry import emitter
-
 
 @pytest.mark.parametrize("solver", SOLVERS)
 def test_a_flap_swings_at_its_own_frequency(solver: str):
@@ -110,6 +107,3 @@ def test_presses_and_arms_have_stops_too(solver: str):
     expected = solve_ivp(rates, (0.0, 50.0), (0.0, 0.0), t_eval=swung.time, max_step=0.02).y[0]
     assert expected.max() > 0.05 and expected[11:18].min() < 0.045
     assert turned - turned[0] == pytest.approx(expected, abs=4e-4)
-    for name in ("motionview", "motionsolve", "msolve"):
-        with pytest.raises(RefusedError, match="the press of bob has stops"):
-            emitter(name).emit(pressed.model)

@@ -15,7 +15,6 @@ from mdlgen.checks import lints
 from mdlgen.errors import RefusedError, SpecError
 from mdlgen.model.lower import lower
 from mdlgen.paths import samples
-from mdlgen.registry import emitter
 from mdlgen.results.summary import summary
 from mdlgen.spec.load import load, loads
 
@@ -261,10 +260,7 @@ planes:"""
     assert -5.0 * result.spin[:, 1, 1] == pytest.approx(speed, abs=1e-3)
 
 
-def test_text_deck_and_script_refuse_what_moves_by_name():
-    for name in ("motionview", "motionsolve", "msolve"):
-        with pytest.raises(RefusedError, match="lift has a slide"):
-            emitter(name).emit(model(LIFT))
+def test_a_static_analysis_refuses_a_part_that_moves_by_name():
     with pytest.raises(RefusedError, match=r"static analysis with a part that moves \(lift\)"):
         solved(model(LIFT, "run.analysis=static"), "lattice")
 

@@ -11,7 +11,7 @@ from asked import as_asked
 
 import mdlgen
 from mdlgen.backends.lattice.arrays import build
-from mdlgen.backends.lattice.integrate.work import start
+from mdlgen.backends.lattice.integrate.work import beginning, start
 from mdlgen.backends.lattice.kernels.linear.band import empty
 from mdlgen.backends.lattice.statics import rest as static
 from mdlgen.errors import RefusedError
@@ -101,7 +101,7 @@ def test_the_stiffness_is_the_derivative_of_the_forces(
     pulled = "loads=[{sheet: note, edge: y_max, force: [0.002 N, 0 N, 0.004 N]}]"
     made = model("cantilever", "sheets.note.boxes=[2,3]", pulled, *bent)
     system = build(made)
-    state, _, _ = start(made, system)
+    state, _, _ = start(made, beginning(made, system))
     x, r = state[:2]
     rng = np.random.default_rng(1)
 
