@@ -173,7 +173,7 @@ class TestProbability:
 
     def test_what_a_sample_does_to_it_is_said(self) -> None:
         assert caveat("random") == ""
-        assert "spread evenly" in caveat("lhs") and "no probability" in caveat("grid")
+        assert "spread evenly" in caveat("lhs") and "not a probability" in caveat("grid")
 
 
 def ishigami(x: np.ndarray) -> np.ndarray:
