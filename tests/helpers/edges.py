@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 from scipy.spatial.transform import Rotation
 
-from mdlgen.mechanics.edge import stands
+from mdlgen.mechanics.beside import stands
 from mdlgen.mechanics.frame import Box, Frame, Law, Plate
 from mdlgen.mechanics.plate import STRAIGHT, as_guide, box_plane
 from mdlgen.mechanics.point import MOST_POINTS, OUT, POINT
