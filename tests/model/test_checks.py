@@ -22,9 +22,10 @@ def found(sample: str, *overrides: str) -> list[Lint]:
 
 @pytest.mark.parametrize("path", SAMPLES, ids=lambda p: p.stem)
 def test_no_false_alarm_on_a_sample(path: Path) -> None:
-    # the rod of one sample is there to bend a sheet beyond its yield curvature
-    expected = ["W146"] if path.stem == "crease" else []
-    assert [lint.code for lint in lints(lower(load(path)))] == expected
+    # the rod of one sample is there to bend a sheet beyond its yield curvature, and notes of another bend
+    # along their way alone
+    expected = {"crease": {"W146"}, "recycler": {"W102"}}.get(path.stem, set())
+    assert {lint.code for lint in lints(lower(load(path)))} == expected
 
 
 CASES = [
