@@ -34,7 +34,8 @@ def missed(result: Result) -> list[str]:
 
 
 def test_the_scene_has_the_lint_that_its_head_names() -> None:
-    assert {lint.code for lint in lints(made := model())} == {"W102"}
+    made = model()
+    assert {lint.code for lint in lints(made)} == {"W102"}
     assert len(made.sheets) == 6 and all(sheet.count == 40 for sheet in made.sheets)
     assert len((samples() / "recycler.yaml").read_text().splitlines()) < 150
 
