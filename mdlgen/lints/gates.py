@@ -107,8 +107,9 @@ def turned_away(model: Model) -> Iterator[Lint]:
 
 
 def _back(face: Floats, normal: Floats, center: Floats, velocity: Floats) -> bool | None:
-    """Whether what goes on from a centre along its velocity meets the back of a face, points (n, 3) along a
-    straight line, or passes behind it; None: it does neither, and not before it, or it is not known."""
+    """True if a body that moves straight on, from a centre along its velocity, meets the back of a face or
+    passes behind it. False if it meets the front or passes before it. None: not known. The face is given by
+    points along a straight line, (n, 3)."""
     way = velocity / np.linalg.norm(velocity)
     ahead = float(normal @ way)
     facing = abs(ahead) > _FACING

@@ -1,4 +1,4 @@
-"""Which sheets are in the machine along a run, which have come in, and which have left."""
+"""The sheets in the machine during a run, and those that have entered and left."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from mdlgen.model.tables import Model
 
 
 class Stays:
-    """What conditions know of sheets that come in and leave."""
+    """Values of conditions about sheets that enter and leave."""
 
     def __init__(self, model: Model):
         self.there: NDArray[np.bool_] | None = None  # (sheets,); None: all
@@ -33,7 +33,8 @@ class Stays:
         return True
 
     def known(self, name: str) -> Amount | float:
-        """Of `SHEET.left` whether it has left, of `STREAM.left` how many have; the same of entered."""
+        """Value of `SHEET.left`: 1 if the sheet has left, else 0. Value of `STREAM.left`: number of its
+        sheets that have left. `entered` likewise."""
         thing, _, word = name.partition(".")
         left = np.zeros_like(self._came) if self.there is None else self._came & ~self.there
         found = self._came if word == "entered" else left

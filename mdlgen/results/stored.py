@@ -1,4 +1,4 @@
-"""What is stored of bodies that are there for a part of a run: an array in blocks."""
+"""An array in blocks, for values of bodies that are present for a part of a run."""
 
 from __future__ import annotations
 
@@ -11,10 +11,10 @@ from mdlgen.model.tables import Floats, Ints
 
 
 class Block(NamedTuple):
-    """Columns that have values of their own at stored times in a row, and the same ones before and after."""
+    """Columns with one value for each of some consecutive times, and constant before and after them."""
 
     columns: Ints  # (n,)
-    first: int  # of these times
+    first: int  # index of the first of these times
     rows: Floats  # (times, n, width)
     before: Floats  # (n, width)
     after: Floats
@@ -49,7 +49,7 @@ class Stored(np.lib.mixins.NDArrayOperatorsMixin):
 
     @property
     def finite(self) -> bool:
-        """Whether all its numbers are."""
+        """True if all its numbers are finite."""
         return all(np.isfinite(array).all() for block in self._blocks for array in block[2:])
 
     def __getitem__(self, key: Any) -> Any:
@@ -110,5 +110,5 @@ class Stored(np.lib.mixins.NDArrayOperatorsMixin):
 
 
 def finite(array: Any) -> bool:
-    """Whether all numbers of an array, or of a Stored, are finite."""
+    """True if all numbers of an array, or of a Stored, are finite."""
     return array.finite if isinstance(array, Stored) else bool(np.isfinite(array).all())

@@ -205,7 +205,7 @@ def _event(wanted: Requirement, record: Mapping[str, Any]) -> Outcome:
 
 
 def _state(result: Result, record: Mapping[str, Any], wanted: Requirement) -> Outcome:
-    """Of a sheet, each of a stream, or a sensor at the end; the value is how many are not so."""
+    """Verdict on the state of a sheet, a stream or a sensor at the end; the value counts those not in it."""
     part = str(wanted.part)
     streams = dict(result.model.reactions.streams)
     sheets = [result.model.sheets[k].name for k in streams.get(part, ())]

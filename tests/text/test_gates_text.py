@@ -17,6 +17,7 @@ from mdlgen.paths import samples
 from mdlgen.registry import emitter
 from mdlgen.spec.load import load, loads
 from mdlgen.spec.scene import Scene
+from mdlgen.verify.outcome import Verification
 from mdlgen.verify.perturb import perturb
 from mdlgen.verify.perturb.perturbations import Perturbation
 from mdlgen.verify.solver_expressions import of_joint
@@ -60,6 +61,22 @@ def test_what_texts_are_compared_with_is_the_law_of_the_solvers() -> None:
         assert places(moving, times) == pytest.approx(due, abs=1e-14)
 
 
+def changed(scene: Scene, change: tuple[str, str, str], folder: Path) -> Verification:
+    """What verify says of a text in which one place is replaced; `change`: output, pattern, replacement."""
+    output, wrong, right = change
+    text = emitter(output).emit(lower(scene))
+    other = re.sub(wrong, right, text, count=1)
+    assert other != text
+    key, name = {
+        "motionview": ("text", "m.mdl"),
+        "motionsolve": ("deck", "m.xml"),
+        "msolve": ("msolve", "m.py"),
+    }[output]
+    file = folder / name
+    file.write_text(other)
+    return verify(scene, lower(scene), perturb=False, **{key: file})
+
+
 @pytest.mark.parametrize(
     ("output", "wrong", "right"),
     [
@@ -69,14 +86,7 @@ def test_what_texts_are_compared_with_is_the_law_of_the_solvers() -> None:
     ],
 )
 def test_a_motion_that_is_changed_is_caught(output: str, wrong: str, right: str, tmp_path: Path) -> None:
-    scene = scene_of()
-    text = emitter(output).emit(lower(scene))
-    changed = re.sub(wrong, right, text, count=1)
-    assert changed != text
-    file = tmp_path / {"motionview": "m.mdl", "motionsolve": "m.xml", "msolve": "m.py"}[output]
-    file.write_text(changed)
-    key = {"motionview": "text", "motionsolve": "deck", "msolve": "msolve"}[output]
-    assert not verify(scene, lower(scene), perturb=False, **{key: file}).ok
+    assert not changed(scene_of(), (output, wrong, right), tmp_path).ok
 
 
 @pytest.mark.parametrize("output", OUTPUTS)
@@ -141,14 +151,7 @@ def test_the_law_of_stops_is_that_of_the_solvers() -> None:
     ],
 )
 def test_a_stop_that_is_changed_is_caught(output: str, wrong: str, right: str, tmp_path: Path) -> None:
-    scene = free_scene()
-    text = emitter(output).emit(lower(scene))
-    changed = re.sub(wrong, right, text, count=1)
-    assert changed != text
-    file = tmp_path / {"motionview": "m.mdl", "motionsolve": "m.xml", "msolve": "m.py"}[output]
-    file.write_text(changed)
-    key = {"motionview": "text", "motionsolve": "deck", "msolve": "msolve"}[output]
-    assert not verify(scene, lower(scene), perturb=False, **{key: file}).ok
+    assert not changed(free_scene(), (output, wrong, right), tmp_path).ok
 
 
 @pytest.mark.parametrize("output", OUTPUTS)

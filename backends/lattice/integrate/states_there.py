@@ -1,7 +1,7 @@
-"""Places and velocities at the times that a run stores, of sheets while they are there, and of all parts.
+"""Places and velocities at stored times, of sheets while they are in the machine and of parts.
 
-A sheet that has not come yet, or has left, has no rows: it is where it is, without a velocity. So memory goes
-with the sheets in the machine, not with those that there ever are.
+A sheet that has not entered yet, or has left, has no rows: it stays at its place, without a velocity. So
+memory grows with the sheets in the machine, not with all sheets of the scene.
 """
 
 from __future__ import annotations
@@ -19,7 +19,7 @@ from mdlgen.model.rotations import euler_parameters
 from mdlgen.model.tables import Floats, Ints, Model
 from mdlgen.results.stored import Block, Stored
 
-# Of what can be kept: the first stored time of each block and how many it has; where all are before, after.
+# Names in a checkpoint: first stored time and number of times of each block; places before and after them.
 SPANS, ENDS = "spans", ("before_x", "before_e", "after_x", "after_e")
 
 
